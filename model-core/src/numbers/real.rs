@@ -272,7 +272,7 @@ mod tests {
     use crate::numbers::random::splitmix64;
 
     #[test]
-    fn a_whole_number_of_64_bits_is_the_one_that_the_language_says() {
+    fn to_i64_equals_cast() {
         let mut state = 7;
         let ends =
             [0x5e7f_ffff, 0x5e80_0000, 0x5eff_ffff, 0x5f00_0000, 0x4f80_0000, 0x4f7f_ffff, 0x7f80_0000, 0x7fc0_0000];
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_of_a_whole_one_of_64_bits_is_the_one_that_the_language_says() {
+    fn from_i64_equals_cast() {
         let mut state = 7;
         // Midpoints between two adjacent numbers, and the integers next to the midpoints, at every magnitude.
         let halves = (24..63).flat_map(|bit| {

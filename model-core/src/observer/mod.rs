@@ -25,7 +25,8 @@ mod outputs;
 mod samples;
 pub(crate) mod sensors;
 pub mod tables;
-
+#[cfg(test)]
+mod test_tables;
 mod thresholds;
 
 use core::mem::MaybeUninit;

@@ -234,3 +234,32 @@ fn into_turn<T: Real>(turns: i32, fraction: T) -> (i32, T) {
         (turns, fraction)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fraction_within_turn_is_kept() {
+        assert_eq!(into_turn(3, 0.25_f32), (3, 0.25));
+        assert_eq!(into_turn(3, 0.0_f32), (3, 0.0));
+    }
+
+    #[test]
+    fn fraction_beyond_turn_is_normalised() {
+        assert_eq!(into_turn(3, 1.25_f32), (4, 0.25));
+        assert_eq!(into_turn(3, 1.0_f32), (4, 0.0));
+        assert_eq!(into_turn(3, -0.25_f32), (2, 0.75));
+        assert_eq!(into_turn(i32::MAX, 1.5_f32).0, i32::MIN);
+    }
+
+    #[test]
+    fn hold_invalidates_and_keeps_values() {
+        let mut estimates = Estimates::<f32> { contact_valid: true, settled: true, ..Estimates::default() };
+        estimates.gap = Estimate { value: 1.0, variance: 2.0, valid: true };
+        hold(&mut estimates, MotorFault::Frozen);
+        assert_eq!(estimates.source, Source::Nothing(MotorFault::Frozen));
+        assert_eq!(estimates.gap, Estimate { value: 1.0, variance: 2.0, valid: false });
+        assert!(!estimates.contact_valid && !estimates.settled);
+    }
+}

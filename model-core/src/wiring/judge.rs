@@ -612,3 +612,45 @@ fn matching_power_of_two<T: Real>(size: T, tolerance: T) -> Option<T> {
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factor_from_one_is_symmetric() {
+        assert_eq!((factor_from_one(4.0_f32), factor_from_one(0.25_f32)), (4.0, 4.0));
+        assert!(factor_from_one(0.0_f32).is_finite());
+    }
+
+    #[test]
+    fn power_of_two_is_matched_within_tolerance() {
+        assert_eq!(matching_power_of_two(4.3_f32, 0.1), Some(4.0));
+        assert_eq!(matching_power_of_two(0.5_f32, 0.1), Some(0.5));
+        assert_eq!(matching_power_of_two(1.0_f32, 0.1), None);
+        assert_eq!(matching_power_of_two(64.0_f32, 0.1), None, "more than 5 bits");
+    }
+
+    #[test]
+    fn signs_separate_three_reversals() {
+        use WiringItem::{MotorDirection, OutputDirection, TorqueDirection};
+        for (motor_sign, output_sign, wrong) in
+            [(1, -1, OutputDirection), (-1, 1, TorqueDirection), (-1, -1, MotorDirection)]
+        {
+            let mut wiring = Wiring::<f32>::default();
+            judge_directions(&mut wiring, motor_sign, output_sign, true);
+            for item in [MotorDirection, OutputDirection, TorqueDirection] {
+                assert_eq!(wiring.verdict(item).is_bad(), item == wrong, "{item:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn unknown_output_leaves_two_suspects() {
+        let mut wiring = Wiring::<f32>::default();
+        judge_directions(&mut wiring, -1, 0, true);
+        assert_eq!(wiring.verdict(WiringItem::MotorDirection), WiringVerdict::Suspect(-1.0));
+        assert_eq!(wiring.verdict(WiringItem::TorqueDirection), WiringVerdict::Suspect(-1.0));
+        assert_eq!(wiring.verdict(WiringItem::OutputDirection), WiringVerdict::NotSeen);
+    }
+}

@@ -86,3 +86,46 @@ impl<T: Real> Line<T> {
         Some(Fit { slope, step, deviation, step_deviation })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Line through `points` points of y1 = 2 x + 3 s and y2 = -x.
+    fn line(points: u16) -> Line<f32> {
+        let mut line = Line::default();
+        for point in 0..points {
+            let (x, s) = (f32::from(point) - 10.0, if point % 2 == 0 { 1.0 } else { -1.0 });
+            line.add(x, s, [2.0 * x + 3.0 * s, -x]);
+        }
+        line
+    }
+
+    #[test]
+    fn slope_and_step_are_fitted() {
+        let fit = line(40).fit([1.0, 0.0]).expect("enough points");
+        assert!((fit.slope - 2.0).abs() < 1e-3 && (fit.step - 3.0).abs() < 1e-2, "{fit:?}");
+        let fit = line(40).fit([0.0, 2.0]).expect("enough points");
+        assert!((fit.slope + 2.0).abs() < 1e-3 && fit.sign() == -1, "{fit:?}");
+    }
+
+    #[test]
+    fn few_points_give_no_line() {
+        assert!(line(JUDGE.min_points - 1).fit([1.0, 0.0]).is_none());
+        assert!(line(JUDGE.min_points).fit([1.0, 0.0]).is_some());
+    }
+
+    #[test]
+    fn constant_x_gives_no_line() {
+        let mut line = Line::<f32>::default();
+        (0..40).for_each(|point| line.add(5.0, 1.0, [point as f32, 0.0]));
+        assert!(line.fit([1.0, 0.0]).is_none());
+    }
+
+    #[test]
+    fn sign_needs_four_deviations() {
+        let fit = Fit { slope: 4.1_f32, step: 0.0, deviation: 1.0, step_deviation: 0.0 };
+        assert_eq!((fit.sign(), Fit { slope: -4.1, ..fit }.sign()), (1, -1));
+        assert_eq!((Fit { slope: 3.9, ..fit }.sign(), Fit { slope: f32::NAN, ..fit }.sign()), (0, 0));
+    }
+}

@@ -61,3 +61,51 @@ impl Track {
         self.highest.saturating_sub(self.lowest)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn encoder() -> EncoderTable<f32> {
+        EncoderTable {
+            turn: 4096,
+            wraps_at: 4096,
+            last: 4095,
+            phase: 1 << 52,
+            fastest: 50,
+            angle: 1.0,
+            fraction: 1.0,
+            turns: 1.0,
+        }
+    }
+
+    /// Track of raw counts.
+    fn track(raw: impl IntoIterator<Item = u32>) -> Track {
+        let mut track = Track::default();
+        raw.into_iter().for_each(|raw| track.add_counts(&encoder(), raw));
+        track
+    }
+
+    #[test]
+    fn travel_is_exact_over_wrap() {
+        let track = track([4090, 10, 40, 0]);
+        assert_eq!((track.position, track.span(), track.wrapped_at), (6, 46, 0));
+    }
+
+    #[test]
+    fn wrap_below_range_is_detected() {
+        assert_eq!(track([1020, 1]).wrapped_at, 1024);
+        assert_eq!(track([500, 900]).wrapped_at, 0, "no power of two");
+    }
+
+    #[test]
+    fn distant_reading_is_no_travel() {
+        assert_eq!(track([0, 51]).position, 0);
+        assert_eq!(track([0, 50]).position, 50);
+    }
+
+    #[test]
+    fn raw_count_out_of_range_is_kept_as_evidence() {
+        assert_eq!(track([0, 5000, 100]).largest_out_of_range, 5000);
+    }
+}

@@ -36,3 +36,62 @@ pub fn with_hysteresis<T: Real>(before: Option<Flank>, force: T, on: T, off: T) 
     let threshold = if before == Some(flank) { off } else { on };
     (force.abs() > threshold).then_some(flank)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contact after `periods` of a force, with a standard deviation of 1 N.
+    fn after(contact: &mut ForceContact, force: f32, periods: u8) -> Option<Flank> {
+        (0..periods).fold(None, |_, _| contact.step(force, 1.0))
+    }
+
+    #[test]
+    fn contact_begins_above_two_deviations() {
+        assert_eq!(with_hysteresis(None, 2.0, 2.0, 1.0), None);
+        assert_eq!(with_hysteresis(None, 2.01, 2.0, 1.0), Some(Flank::Drive));
+        assert_eq!(with_hysteresis(None, -2.01, 2.0, 1.0), Some(Flank::Back));
+    }
+
+    #[test]
+    fn contact_is_kept_above_one_deviation() {
+        assert_eq!(with_hysteresis(Some(Flank::Drive), 1.01, 2.0, 1.0), Some(Flank::Drive));
+        assert_eq!(with_hysteresis(Some(Flank::Drive), 1.0, 2.0, 1.0), None);
+    }
+
+    #[test]
+    fn other_flank_needs_force_to_begin() {
+        assert_eq!(with_hysteresis(Some(Flank::Drive), -1.5, 2.0, 1.0), None);
+        assert_eq!(with_hysteresis(Some(Flank::Drive), -2.5, 2.0, 1.0), Some(Flank::Back));
+    }
+
+    #[test]
+    fn force_of_nan_is_no_contact() {
+        assert_eq!(with_hysteresis(Some(Flank::Back), f32::NAN, 2.0, 1.0), None);
+        assert_eq!(with_hysteresis(None, f32::INFINITY, 2.0, 1.0), Some(Flank::Drive));
+    }
+
+    #[test]
+    fn change_needs_persistence() {
+        let mut contact = ForceContact::default();
+        assert_eq!(after(&mut contact, 5.0, CONTACT.persistence - 1), None);
+        assert_eq!(after(&mut contact, 5.0, 1), Some(Flank::Drive));
+    }
+
+    #[test]
+    fn interrupted_change_starts_anew() {
+        let mut contact = ForceContact::default();
+        after(&mut contact, 5.0, CONTACT.persistence - 1);
+        after(&mut contact, 0.0, 1);
+        assert_eq!(after(&mut contact, 5.0, CONTACT.persistence - 1), None);
+        assert_eq!(after(&mut contact, 5.0, 1), Some(Flank::Drive));
+    }
+
+    #[test]
+    fn alternating_force_keeps_contact_open() {
+        let mut contact = ForceContact::default();
+        for period in 0..20 {
+            assert_eq!(contact.step(if period % 2 == 0 { 5.0 } else { -5.0 }, 1.0), None);
+        }
+    }
+}

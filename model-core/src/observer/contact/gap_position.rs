@@ -96,3 +96,97 @@ impl<T: Real> GapPosition<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DRIVE: Option<Flank> = Some(Flank::Drive);
+    const BACK: Option<Flank> = Some(Flank::Back);
+
+    /// Teeth at rest at a deflection [um] in a gap of 2 x 80 um, with a blur of 10 um; only the motor side gives force.
+    fn at(deflection: f32) -> GapPosition<f32> {
+        GapPosition {
+            deflection: deflection * 1e-6,
+            travel: 0.0,
+            half_gap: 80e-6,
+            blur: 10e-6,
+            near: 4e-6,
+            stiffness: 5e6,
+            weight: 0.0,
+        }
+    }
+
+    #[test]
+    fn teeth_inside_gap_touch_nothing() {
+        assert_eq!(at(69.0).contact(None, 100.0, 1.0).0, None);
+        assert_eq!(at(-69.0).contact(BACK, -100.0, 1.0).0, None);
+    }
+
+    #[test]
+    fn teeth_within_blur_touch_under_force() {
+        assert_eq!(at(71.0).contact(None, 2.1, 1.0).0, DRIVE);
+        assert_eq!(at(71.0).contact(None, 1.9, 1.0).0, None);
+        assert_eq!(at(-71.0).contact(None, -2.1, 1.0).0, BACK);
+    }
+
+    #[test]
+    fn force_of_far_flank_is_ignored() {
+        assert_eq!(at(85.0).contact(None, -100.0, 1.0).0, None);
+    }
+
+    #[test]
+    fn teeth_that_land_within_lag_touch() {
+        let landing = GapPosition { travel: 20e-6, ..at(65.0) };
+        assert_eq!(landing.contact(None, 0.0, 1.0).0, DRIVE);
+        assert_eq!(GapPosition { travel: 10e-6, ..landing }.contact(None, 0.0, 1.0).0, None);
+        assert_eq!(GapPosition { travel: -20e-6, ..landing }.contact(None, 0.0, 1.0).0, None);
+    }
+
+    #[test]
+    fn landing_does_not_replace_other_flank() {
+        let landing = GapPosition { travel: 20e-6, ..at(65.0) };
+        assert_eq!(landing.contact(BACK, 0.0, 1.0).0, None);
+        assert_eq!(landing.contact(DRIVE, 0.0, 1.0).0, DRIVE);
+    }
+
+    #[test]
+    fn combined_force_follows_weight() {
+        let wound_up = at(100.0);
+        let (_, force) = wound_up.contact(None, 40.0, 1.0);
+        assert_eq!(force, 40.0);
+        let (_, force) = GapPosition { weight: 1.0, ..wound_up }.contact(None, 40.0, 1.0);
+        assert!((force - 100.0).abs() < 0.01, "20 um of 5 N/um: {force}");
+        let (_, force) = GapPosition { weight: 1.0, ..at(-100.0) }.contact(None, -40.0, 1.0);
+        assert!((force + 100.0).abs() < 0.01, "{force}");
+    }
+
+    #[test]
+    fn settled_teeth_near_flank_are_reported() {
+        assert_eq!(at(75.0).reported_contact(None, 0.0, [1.0; 2], true).0, DRIVE);
+        assert_eq!(at(69.0).reported_contact(None, 0.0, [1.0; 2], true).0, None);
+        assert_eq!(at(75.0).reported_contact(None, -1.1, [1.0; 2], true).0, None, "pulled off");
+        assert_eq!(at(-75.0).reported_contact(None, 1.1, [1.0; 2], true).0, None, "pulled off");
+    }
+
+    #[test]
+    fn bouncing_teeth_are_reported_within_near() {
+        assert_eq!(at(77.0).reported_contact(None, 0.0, [1.0; 2], false).0, DRIVE);
+        assert_eq!(at(75.0).reported_contact(None, 0.0, [1.0; 2], false).0, None);
+        let leaving = GapPosition { travel: -1e-6, ..at(77.0) };
+        assert_eq!(leaving.reported_contact(None, 0.0, [1.0; 2], false).0, None);
+    }
+
+    #[test]
+    fn gap_coordinate_leaves_wind_up_out() {
+        assert_eq!(at(50.0).gap_coordinate(0.1), 50e-6);
+        assert!((at(100.0).gap_coordinate(0.1) - 82e-6).abs() < 1e-10);
+        assert!((at(-100.0).gap_coordinate(0.1) + 82e-6).abs() < 1e-10);
+    }
+
+    #[test]
+    fn deflection_of_nan_is_no_contact() {
+        assert_eq!(at(f32::NAN).contact(None, 0.0, 1.0).0, None);
+        assert_eq!(at(f32::NAN).reported_contact(DRIVE, 0.0, [1.0; 2], true).0, None);
+    }
+}

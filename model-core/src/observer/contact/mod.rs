@@ -42,3 +42,24 @@ impl Contact {
         force
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(deflection: f32) -> GapPosition<f32> {
+        GapPosition { deflection, travel: 0.0, half_gap: 80.0, blur: 10.0, near: 4.0, stiffness: 5.0, weight: 0.0 }
+    }
+
+    #[test]
+    fn settled_contact_lasts_until_middle_of_gap() {
+        let mut contact = Contact::default();
+        contact.step_by_position(&at(75.0), 0.0, [1.0; 2], true);
+        contact.step_by_position(&at(41.0), 0.0, [1.0; 2], false);
+        contact.step_by_position(&at(75.0), 0.0, [1.0; 2], false);
+        assert_eq!(contact.reported, Some(Flank::Drive), "5 of 10 within the blur");
+        contact.step_by_position(&at(40.0), 0.0, [1.0; 2], false);
+        contact.step_by_position(&at(75.0), 0.0, [1.0; 2], false);
+        assert_eq!(contact.reported, None, "teeth that crossed the middle must come nearer");
+    }
+}

@@ -29,14 +29,14 @@ fn add_dwells(uncertainty: &mut Uncertainty<f64>, rests: usize, deviations: f64,
 }
 
 #[test]
-fn noise_of_rests_that_fit_stays() {
+fn dwell_noise_stays_while_dwells_fit() {
     let mut uncertainty = uncertainty();
     add_dwells(&mut uncertainty, 1000, 0.9, 2);
     assert_eq!(uncertainty.dwell_deviation, 1.0);
 }
 
 #[test]
-fn noise_of_rests_is_followed() {
+fn dwell_noise_follows_innovations() {
     let mut uncertainty = uncertainty();
     add_dwells(&mut uncertainty, 200, 4.0, 2);
     assert!((uncertainty.dwell_deviation - 4.0).abs() < 0.2, "{}", uncertainty.dwell_deviation);
@@ -45,7 +45,7 @@ fn noise_of_rests_is_followed() {
 }
 
 #[test]
-fn half_gap_change_shows_on_both_flanks() {
+fn half_gap_change_needs_both_flanks() {
     let mut wider = uncertainty();
     add_dwells(&mut wider, 40, 4.0, 1);
     assert!(wider.detect_half_gap_change());

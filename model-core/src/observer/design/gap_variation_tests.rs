@@ -33,7 +33,7 @@ fn see(variation: &mut GapVariation<f32>, table: &CountTable<f32>, angle: f64, o
 }
 
 #[test]
-fn nothing_is_added_where_both_flanks_were_seen() {
+fn variance_is_zero_where_both_flanks_were_seen() {
     let (table, mut variation) = (counts(), GapVariation::new());
     assert_eq!(
         deviation(&mut variation, &table, 1.0),
@@ -45,7 +45,7 @@ fn nothing_is_added_where_both_flanks_were_seen() {
 }
 
 #[test]
-fn what_is_further_away_is_known_less() {
+fn variance_grows_with_distance() {
     let (table, mut variation) = (counts(), GapVariation::new());
     see(&mut variation, &table, -0.1, 0.0);
     let [near, far] = [0.2, 0.5].map(|angle| deviation(&mut variation, &table, angle));
@@ -53,7 +53,7 @@ fn what_is_further_away_is_known_less() {
 }
 
 #[test]
-fn even_gears_are_trusted_and_worn_ones_are_not() {
+fn worn_gears_have_more_variance_than_even_ones() {
     let table = counts();
     let [even, worn] = [0.0, 0.3].map(|off| {
         let mut variation = GapVariation::new();

@@ -119,7 +119,7 @@ mod tests {
     use crate::observer::design::settings::{EncoderSettings, ObserverSettings};
 
     #[test]
-    fn the_motor_side_lags_behind_a_steady_rise_by_as_much_as_it_says() {
+    fn drive_lag_equals_lag_of_filter() {
         let body = Body {
             sun_lever: 7e-3,
             output_lever: 42e-3,

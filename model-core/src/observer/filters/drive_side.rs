@@ -93,3 +93,59 @@ impl<T: Real> DriveSide<T> {
         self.disturbance_torque = T::ZERO;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::{current, drive};
+
+    #[test]
+    fn torque_accelerates_motor() {
+        let mut side = DriveSide::default();
+        side.predict(&drive(), &current(), 2.0, 0.0);
+        assert_eq!((side.angle_residual, side.speed, side.air_gap()), (1.0, 2.0, 2.0));
+        side.predict(&drive(), &current(), 0.0, 3.0);
+        assert_eq!((side.angle_residual, side.speed), (0.0, 2.0), "2 rad further, less 3 rad of counts");
+    }
+
+    #[test]
+    fn disturbance_torque_brakes_motor() {
+        let mut side = DriveSide { disturbance_torque: 1.0, ..DriveSide::default() };
+        side.predict(&drive(), &current(), 0.0, 0.0);
+        assert_eq!(side.speed, -1.0);
+    }
+
+    #[test]
+    fn command_acts_after_delay() {
+        let delayed = CurrentTable { whole_delay: 1, part_delay: 0.5, ..current() };
+        let mut side = DriveSide::default();
+        let air_gap = [4.0, 0.0, 0.0, 0.0].map(|command| {
+            side.predict(&drive(), &delayed, command, 0.0);
+            side.air_gap()
+        });
+        assert_eq!(air_gap, [0.0, 2.0, 2.0, 0.0]);
+    }
+
+    #[test]
+    fn peak_torque_decays() {
+        let mut side = DriveSide::default();
+        side.predict(&drive(), &current(), -4.0, 0.0);
+        assert_eq!(side.peak_torque(), 4.0);
+        side.predict(&drive(), &current(), 1.0, 0.0);
+        assert!((side.peak_torque() - 3.8).abs() < 1e-6);
+    }
+
+    #[test]
+    fn reading_ahead_raises_angle_and_speed() {
+        let mut side = DriveSide { angle_residual: -1.0, ..DriveSide::default() };
+        side.correct(&drive(), 0.0);
+        assert_eq!((side.angle_residual, side.speed, side.disturbance_torque), (-0.5, 0.25, -0.125));
+    }
+
+    #[test]
+    fn age_moves_expected_angle() {
+        let mut side = DriveSide { angle_residual: 0.5, speed: 1.0, ..DriveSide::default() };
+        side.correct(&drive(), 0.5);
+        assert_eq!((side.angle_residual, side.speed), (0.5, 1.0), "the motor turned 0.5 rad since the reading");
+    }
+}

@@ -54,3 +54,33 @@ impl<T: Real> LoadSide<T> {
         self.torque += torque * innovation;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::load;
+
+    #[test]
+    fn net_torque_accelerates_link() {
+        let mut side = LoadSide { torque: 1.0, ..LoadSide::default() };
+        side.predict(&load(), 3.0, 0.0);
+        assert_eq!((side.angle_residual, side.speed), (1.0, 2.0));
+        side.predict(&load(), 1.0, 3.0);
+        assert_eq!((side.angle_residual, side.speed), (0.0, 2.0));
+    }
+
+    #[test]
+    fn reading_behind_raises_load_torque() {
+        let mut side = LoadSide { angle_residual: 1.0, ..LoadSide::default() };
+        side.correct(&load(), 0.0, 0.0);
+        assert_eq!((side.angle_residual, side.speed, side.torque), (0.5, -0.25, 0.125));
+    }
+
+    #[test]
+    fn late_reading_uses_speed_at_its_time() {
+        // Speed 2 now under 2 N m: 0 one period ago, so that the link has turned by 1 rad since.
+        let mut side = LoadSide { angle_residual: 1.0, speed: 2.0, torque: 0.0 };
+        side.correct(&load(), 1.0, 2.0);
+        assert_eq!((side.angle_residual, side.speed, side.torque), (1.0, 2.0, 0.0));
+    }
+}

@@ -12,7 +12,7 @@ mod torque_response;
 use link_without_encoder::LinkWithoutEncoder;
 use motor_faults::{MotorFaultDetector, MotorMotionLimits, MotorReadingStatus, RecoveryState};
 use output_faults::OutputFaultDetector;
-use recovery::OutputRecovery;
+use recovery::{OutputEvidence, OutputRecovery};
 use thresholds::OUTPUT_FAULT;
 use torque_response::TorqueResponseCheck;
 
@@ -240,13 +240,9 @@ impl<T: Real> Health<T> {
             - estimator.transmission_error(&interval.mesh);
         let lies_in_gap = output_faults::is_possible(estimator, deflection, force);
         let is_silent = self.output.is_silent();
-        let readmission = self.output_recovery.step(
-            &tables.supervisor,
-            settled,
-            tolerance,
-            lies_in_gap,
-            (!is_silent).then_some(output_phase),
-        )?;
+        let position = (!is_silent).then_some(output_phase);
+        let evidence = OutputEvidence { settled, tolerance, lies_in_gap, position };
+        let readmission = self.output_recovery.step(&tables.supervisor, &evidence)?;
         if self.source == Source::MotorOnly(OutputFault::Absent) {
             return None;
         }

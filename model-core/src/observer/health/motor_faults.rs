@@ -323,3 +323,93 @@ impl<T: Real> MotorFaultDetector<T> {
         self.has_moved
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::{current, drive, supervisor};
+
+    /// Motor side under an air-gap torque [N m].
+    fn under(torque: f32) -> DriveSide<f32> {
+        let mut side = DriveSide::default();
+        side.predict(&drive(), &current(), torque, 0.0);
+        side
+    }
+
+    /// Free travel after ten periods at a standstill under a torque.
+    fn free_travel(torque: f32) -> f32 {
+        let mut detector = MotorFaultDetector::new();
+        (0..10).for_each(|_| detector.integrate_free_motion(&supervisor(), &under(torque)));
+        detector.free_travel
+    }
+
+    #[test]
+    fn torque_within_friction_moves_nothing() {
+        assert_eq!(free_travel(0.1), 0.0);
+        assert_eq!(free_travel(-0.1), 0.0);
+    }
+
+    #[test]
+    fn torque_above_friction_moves_free_motor() {
+        // 1 count per period^2 and newton metre above 0.1 N m, for 1 + 2 + ... + 10 periods.
+        assert!((free_travel(1.1) - 55.0).abs() < 1e-3, "{}", free_travel(1.1));
+        assert!((free_travel(-1.1) + 55.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn friction_stops_free_motor() {
+        let mut detector = MotorFaultDetector::new();
+        detector.integrate_free_motion(&supervisor(), &under(1.1));
+        assert_eq!(detector.free_speed, 1.0);
+        (0..20).for_each(|_| detector.integrate_free_motion(&supervisor(), &under(0.0)));
+        assert_eq!(detector.free_speed, 0.0);
+    }
+
+    #[test]
+    fn standstill_counts_from_limit() {
+        let (mut detector, table) = (MotorFaultDetector::<f32>::new(), supervisor());
+        for _ in 1..table.motor_unmoved_after {
+            detector.integrate_free_motion(&table, &under(0.0));
+        }
+        assert!(!detector.is_at_standstill(&table));
+        detector.integrate_free_motion(&table, &under(0.0));
+        assert!(detector.is_at_standstill(&table));
+    }
+
+    #[test]
+    fn readmission_clears_fault() {
+        let mut detector = MotorFaultDetector::<f32>::new();
+        assert_eq!(detector.exclude(MotorFault::Jumped), MotorReadingStatus::Excluded);
+        assert_eq!((detector.fault(), detector.has_moved()), (Some(MotorFault::Jumped), true));
+        detector.readmit();
+        assert_eq!((detector.fault(), detector.has_moved()), (None, false));
+    }
+
+    #[test]
+    fn unknown_link_speed_allows_any_impact() {
+        let (side, table) = (under(0.0), supervisor());
+        let limits = MotorMotionLimits { table: &table, drive: &side, unknown_torque: 0.0, link_rate: None };
+        assert_eq!((limits.impact_speed_change(640), limits.speed_kept_by_teeth(640)), (i32::MAX, 0));
+    }
+
+    #[test]
+    fn impact_reaches_twice_the_faster_speed() {
+        let (side, table) = (under(0.0), supervisor());
+        let limits =
+            |rate| MotorMotionLimits { table: &table, drive: &side, unknown_torque: 0.0, link_rate: Some(rate) };
+        assert_eq!(limits(100).impact_speed_change(-640), 1280);
+        assert_eq!(limits(-1000).impact_speed_change(640), 2000);
+        assert_eq!(limits(100).speed_kept_by_teeth(100), 100, "a motor that turns with the link keeps its speed");
+        assert_eq!(limits(100).speed_kept_by_teeth(300), 0);
+    }
+
+    #[test]
+    fn speed_below_one_count_is_uncertain() {
+        let (side, table) = (under(0.0), supervisor());
+        let limits = MotorMotionLimits { table: &table, drive: &side, unknown_torque: 0.0, link_rate: None };
+        assert_eq!(limits.lower_speed_bound(PARTS_PER_COUNT - 1), 0.0);
+        assert_eq!(limits.lower_speed_bound(PARTS_PER_COUNT), 1.0);
+        let braked = MotorMotionLimits { unknown_torque: 1.0, ..limits };
+        assert_eq!(braked.lower_speed_bound(PARTS_PER_COUNT), 0.0, "braking by 1 N m is not in the estimate yet");
+    }
+}

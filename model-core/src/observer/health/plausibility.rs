@@ -194,3 +194,181 @@ impl Plausibility {
 pub fn counts<T: Real>(parts: i32) -> T {
     T::from_i32(parts) / T::from_i32(PARTS_PER_COUNT)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Limits of a shaft that an obstacle stops in 10 periods.
+    struct Limits {
+        stops: StopTable<f32>,
+        impact: i32,
+        kept: i32,
+    }
+
+    impl MotionLimits<f32> for Limits {
+        fn stop_table(&self) -> &StopTable<f32> {
+            &self.stops
+        }
+
+        fn half_deceleration(&self) -> f32 {
+            0.0
+        }
+
+        fn impact_speed_change(&self, _: i32) -> i32 {
+            self.impact
+        }
+
+        fn speed_kept_by_teeth(&self, _: i32) -> i32 {
+            self.kept
+        }
+
+        fn lower_speed_bound(&self, rate: i32) -> f32 {
+            counts(rate)
+        }
+    }
+
+    fn limits() -> Limits {
+        Limits { stops: StopTable { stop: 10, forgotten: 12, per_stops: 0.05 }, impact: 0, kept: 0 }
+    }
+
+    /// Shaft that turns steadily by `by` counts per period.
+    fn steady(by: i32) -> Plausibility {
+        let mut plausibility = Plausibility::new();
+        for _ in 0..100 {
+            assert_eq!(plausibility.check(&limits(), by), PlausibilityResult::Plausible);
+        }
+        plausibility
+    }
+
+    #[test]
+    fn first_reading_gives_slowest_speed() {
+        let mut plausibility = Plausibility::new();
+        assert_eq!(plausibility.speed::<f32>(), None);
+        plausibility.check(&limits(), 20);
+        assert_eq!(plausibility.speed::<f32>(), Some(19.0));
+        let mut backward = Plausibility::new();
+        backward.check(&limits(), -20);
+        assert_eq!(backward.speed::<f32>(), Some(-19.0));
+    }
+
+    #[test]
+    fn speed_follows_readings() {
+        assert!((steady(5).speed::<f32>().unwrap_or_default() - 5.0).abs() < 0.1);
+        assert!((steady(-5).speed::<f32>().unwrap_or_default() + 5.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn standstill_in_motion_is_implausible() {
+        for by in [5, -5] {
+            let mut plausibility = steady(by);
+            for _ in 1..PLAUSIBILITY.min_standstill_readings {
+                assert_eq!(plausibility.check(&limits(), 0), PlausibilityResult::Plausible);
+            }
+            assert_eq!(plausibility.check(&limits(), 0), PlausibilityResult::Implausible);
+            assert!(plausibility.is_standstill());
+        }
+    }
+
+    #[test]
+    fn slow_standstill_is_plausible() {
+        let mut plausibility = Plausibility::new();
+        plausibility.check(&limits(), 0);
+        for reading in 0..200 {
+            assert_eq!(plausibility.check(&limits(), i32::from(reading % 4 == 0)), PlausibilityResult::Plausible);
+        }
+        for _ in 0..10 {
+            assert_eq!(plausibility.check(&limits(), 0), PlausibilityResult::Plausible);
+        }
+    }
+
+    #[test]
+    fn long_standstill_is_forgotten() {
+        let mut plausibility = steady(1);
+        for _ in 0..20 {
+            plausibility.check(&limits(), 0);
+        }
+        assert_eq!(plausibility.rate(), 0);
+    }
+
+    #[test]
+    fn teeth_keep_speed_over_stop_time() {
+        let kept = Limits { kept: 5 * PARTS_PER_COUNT, ..limits() };
+        let mut plausibility = steady(1);
+        let results: [_; 9] = core::array::from_fn(|_| plausibility.check(&kept, 0));
+        assert_eq!(results[2], PlausibilityResult::Implausible);
+    }
+
+    #[test]
+    fn deviation_at_jump_limit_is_plausible() {
+        let mut plausibility = steady(0);
+        assert_eq!(plausibility.check(&limits(), 8), PlausibilityResult::Plausible);
+        let mut plausibility = steady(0);
+        assert_eq!(plausibility.check(&limits(), 9), PlausibilityResult::Suspect);
+    }
+
+    #[test]
+    fn impact_allows_larger_deviation() {
+        let impact = Limits { impact: 20 * PARTS_PER_COUNT, ..limits() };
+        assert_eq!(steady(0).check(&impact, 28), PlausibilityResult::Plausible);
+        assert_eq!(steady(0).check(&impact, 29), PlausibilityResult::Suspect);
+    }
+
+    #[test]
+    fn wrong_reading_that_returns_is_ignored() {
+        let mut plausibility = steady(5);
+        assert_eq!(plausibility.check(&limits(), 105), PlausibilityResult::Suspect);
+        assert_eq!(plausibility.check(&limits(), -95), PlausibilityResult::Plausible);
+        assert_eq!(plausibility.check(&limits(), 5), PlausibilityResult::Plausible);
+    }
+
+    #[test]
+    fn confirmed_jump_is_implausible() {
+        let mut plausibility = steady(5);
+        assert_eq!(plausibility.check(&limits(), 105), PlausibilityResult::Suspect);
+        for _ in 1..PLAUSIBILITY.jump_confirmations {
+            assert_eq!(plausibility.check(&limits(), 5), PlausibilityResult::Suspect);
+        }
+        assert_eq!(plausibility.check(&limits(), 5), PlausibilityResult::Implausible);
+        assert!(!plausibility.is_standstill());
+        assert!((plausibility.lead::<f32>() + 100.0).abs() < 3.0, "the shaft is behind the readings");
+    }
+
+    #[test]
+    fn noise_widens_jump_limit() {
+        let mut plausibility = steady(0);
+        for reading in 0..200 {
+            plausibility.check(&limits(), if reading & 1 == 0 { 6 } else { -6 });
+        }
+        assert_eq!(plausibility.check(&limits(), 20), PlausibilityResult::Plausible);
+    }
+
+    #[test]
+    fn reset_speed_keeps_noise() {
+        let mut plausibility = steady(0);
+        for reading in 0..200 {
+            plausibility.check(&limits(), if reading & 1 == 0 { 6 } else { -6 });
+        }
+        let noise = plausibility.noise;
+        plausibility.reset_speed();
+        assert_eq!((plausibility.noise, plausibility.speed::<f32>()), (noise, None));
+        assert!(noise > 0);
+    }
+
+    #[test]
+    fn long_gap_resets_speed() {
+        let mut plausibility = steady(5);
+        plausibility.skip_irregular(5, false);
+        assert!(plausibility.speed::<f32>().is_some());
+        plausibility.skip_irregular(5, true);
+        assert_eq!(plausibility.speed::<f32>(), None);
+    }
+
+    #[test]
+    fn largest_readings_do_not_panic() {
+        let mut plausibility = steady(0);
+        for by in [i32::MAX, i32::MIN, i32::MAX, 0, i32::MIN] {
+            plausibility.check(&limits(), by);
+        }
+    }
+}

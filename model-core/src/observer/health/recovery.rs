@@ -14,7 +14,20 @@ pub enum Readmission {
     NewOffset,
 }
 
-/// Evidence for an excluded encoder.
+/// Evidence of a learning interval on an excluded encoder.
+#[derive(Debug, Clone, Copy)]
+pub struct OutputEvidence<T: Real> {
+    /// In settled contact the flank, and the encoder's deflection less the predicted deflection [m].
+    pub settled: Option<(Flank, T)>,
+    /// Tolerance of agreement [m].
+    pub tolerance: T,
+    /// Outside settled contact, true if the deflection lies between the flanks.
+    pub lies_in_gap: bool,
+    /// Position of the output, if it is read [2^-32 turns].
+    pub position: Option<u32>,
+}
+
+/// Readmission of the output encoder: agreement so far.
 #[derive(Debug, Clone, Copy)]
 pub struct OutputRecovery<T: Real> {
     /// Learning intervals in motion with agreement.
@@ -37,37 +50,28 @@ impl<T: Real> OutputRecovery<T> {
         *self = Self { position: self.position, ..Self::new() };
     }
 
-    /// Judges one learning interval. `settled`: in settled contact the flank and the encoder's deflection less the
-    /// predicted deflection [m]. `tolerance`: tolerance of agreement [m]. `lies_in_gap`: outside settled contact, true if the
-    /// deflection lies between the flanks. `position`: position of the output, if it is read [2^-32 turns].
-    pub fn step(
-        &mut self,
-        table: &SupervisorTable<T>,
-        settled: Option<(Flank, T)>,
-        tolerance: T,
-        lies_in_gap: bool,
-        position: Option<u32>,
-    ) -> Option<Readmission> {
-        let agrees = if let Some((flank, offset)) = settled {
+    /// Judges one learning interval.
+    pub fn step(&mut self, table: &SupervisorTable<T>, evidence: &OutputEvidence<T>) -> Option<Readmission> {
+        let agrees = if let Some((flank, offset)) = evidence.settled {
             let [back, drive] = &mut self.steady_offsets;
             let steady_offset = if flank == Flank::Drive { drive } else { back };
-            if (offset - *steady_offset).abs() > tolerance {
+            if (offset - *steady_offset).abs() > evidence.tolerance {
                 *steady_offset = offset;
                 self.steady_intervals = 0;
             }
-            offset.abs() < tolerance
+            offset.abs() < evidence.tolerance
         } else {
-            lies_in_gap
+            evidence.lies_in_gap
         };
         if !agrees {
             self.agreeing_intervals = 0;
         }
         // A stationary encoder that flickers does not turn.
-        if let Some(position) = position
+        if let Some(position) = evidence.position
             && (position.wrapping_sub(self.position) as i32).unsigned_abs() >= table.moved
         {
             self.position = position;
-            self.steady_intervals = self.steady_intervals.saturating_add(u16::from(settled.is_some()));
+            self.steady_intervals = self.steady_intervals.saturating_add(u16::from(evidence.settled.is_some()));
             self.agreeing_intervals = self.agreeing_intervals.saturating_add(u16::from(agrees));
         }
         if self.agreeing_intervals >= table.trusted_after {
@@ -77,5 +81,86 @@ impl<T: Real> OutputRecovery<T> {
         } else {
             None
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::supervisor;
+
+    const TOLERANCE: f32 = 10e-6;
+    /// Learning intervals of agreement before readmission, and travel that proves motion, in the test table.
+    const INTERVALS: u16 = 5;
+    const TRAVEL: u32 = 1000;
+
+    /// Steps `intervals` in motion with an offset on the drive flank, and returns the last result.
+    fn steps(recovery: &mut OutputRecovery<f32>, offset: f32, intervals: u16, travel: u32) -> Option<Readmission> {
+        let mut result = None;
+        for _ in 0..intervals {
+            let position = recovery.position.wrapping_add(travel);
+            let settled = Some((Flank::Drive, offset));
+            let evidence =
+                OutputEvidence { settled, tolerance: TOLERANCE, lies_in_gap: false, position: Some(position) };
+            result = recovery.step(&supervisor(), &evidence);
+        }
+        result
+    }
+
+    #[test]
+    fn agreement_in_motion_readmits() {
+        let mut recovery = OutputRecovery::new();
+        assert_eq!(steps(&mut recovery, 9e-6, INTERVALS - 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 9e-6, 1, TRAVEL), Some(Readmission::SameOffset));
+    }
+
+    #[test]
+    fn stationary_encoder_is_not_readmitted() {
+        let mut recovery = OutputRecovery::new();
+        assert_eq!(steps(&mut recovery, 0.0, 100, TRAVEL - 1), None);
+    }
+
+    #[test]
+    fn constant_offset_readmits_later() {
+        let mut recovery = OutputRecovery::new();
+        let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
+        assert_eq!(steps(&mut recovery, 50e-6, needed - 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 50e-6, 1, TRAVEL), Some(Readmission::NewOffset));
+    }
+
+    #[test]
+    fn drifting_offset_starts_anew() {
+        let mut recovery = OutputRecovery::new();
+        let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
+        steps(&mut recovery, 50e-6, needed - 1, TRAVEL);
+        assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 61e-6, needed - 2, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), Some(Readmission::NewOffset));
+    }
+
+    #[test]
+    fn disagreement_clears_agreement() {
+        let mut recovery = OutputRecovery::new();
+        steps(&mut recovery, 0.0, INTERVALS - 1, TRAVEL);
+        steps(&mut recovery, 11e-6, 1, TRAVEL);
+        assert_eq!(steps(&mut recovery, 0.0, INTERVALS - 1, TRAVEL), None);
+    }
+
+    #[test]
+    fn offset_of_nan_is_not_readmitted() {
+        let mut recovery = OutputRecovery::new();
+        assert_eq!(steps(&mut recovery, f32::NAN, INTERVALS, TRAVEL), None);
+    }
+
+    #[test]
+    fn open_gap_needs_no_contact() {
+        let mut recovery = OutputRecovery::<f32>::new();
+        let mut result = None;
+        for interval in 1..=u32::from(INTERVALS) {
+            let position = Some(interval * TRAVEL);
+            let evidence = OutputEvidence { settled: None, tolerance: TOLERANCE, lies_in_gap: true, position };
+            result = recovery.step(&supervisor(), &evidence);
+        }
+        assert_eq!(result, Some(Readmission::SameOffset));
     }
 }

@@ -171,3 +171,98 @@ impl<T: Real> TorqueResponseCheck<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BLOCK: u16 = 4;
+
+    fn table() -> ResponseTable<f32> {
+        // A motor whose speed rises by 1/16 rad per period and newton metre has the inertia 1.
+        ResponseTable { block: BLOCK, per_block: 0.25, inertia: 1.0, large: 0.5, alone: 4.0 }
+    }
+
+    /// Drives a motor for `blocks` blocks, without torque while the check asks for it. `sign`: sign of the response.
+    fn drive(check: &mut TorqueResponseCheck<f32>, sign: f32, blocks: u16, torque: impl Fn(u16) -> f32) {
+        let mut speed = 0.0;
+        for period in 0..blocks * BLOCK {
+            let wanted = torque(period / BLOCK);
+            let torque = if check.response() == TorqueResponse::Tested { 0.0 } else { wanted };
+            speed += sign * torque / 16.0;
+            check.step(&table(), torque, speed);
+        }
+    }
+
+    /// Torque that changes its sign every three blocks.
+    fn swinging(block: u16) -> f32 {
+        if block / 3 % 2 == 0 { 1.0 } else { -1.0 }
+    }
+
+    #[test]
+    fn right_sign_is_found() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, 1.0, 40, swinging);
+        assert_eq!(check.response(), TorqueResponse::Right);
+    }
+
+    #[test]
+    fn right_sign_needs_votes() {
+        let mut check = TorqueResponseCheck::new();
+        let votes = TorqueResponseThresholds::<f32>::TUNED.right_votes;
+        check.votes = votes - 2;
+        check.vote(&table(), 1.0, 1.0);
+        assert_eq!(check.votes, votes - 1);
+        check.vote(&table(), -1.0, -1.0);
+        assert_eq!(check.votes, votes);
+        check.vote(&table(), 1.0, -1.0);
+        assert_eq!(check.votes, votes - 1);
+    }
+
+    #[test]
+    fn reversed_sign_is_found_under_constant_torque() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, -1.0, 60, |_| 1.0);
+        assert_eq!(check.response(), TorqueResponse::Reversed);
+    }
+
+    #[test]
+    fn small_torque_does_not_vote() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, 1.0, 60, |block| 0.24 * swinging(block));
+        assert_eq!((check.response(), check.votes), (TorqueResponse::Unknown, 0));
+    }
+
+    #[test]
+    fn weak_response_does_not_vote() {
+        let mut check = TorqueResponseCheck::new();
+        check.vote(&table(), 1.0, 0.16);
+        check.vote(&table(), 1.0, -0.16);
+        assert_eq!(check.votes, 0);
+        check.vote(&table(), 1.0, 0.17);
+        assert_eq!(check.votes, 1);
+    }
+
+    #[test]
+    fn tooth_impact_pauses_check() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, 1.0, 6, swinging);
+        assert_eq!(check.undisturbed_blocks, 4);
+        for _ in 0..BLOCK {
+            check.step(&table(), 1.0, 10.0);
+        }
+        assert_eq!((check.undisturbed_blocks, check.response()), (0, TorqueResponse::Unknown));
+    }
+
+    #[test]
+    fn interrupt_keeps_votes_and_decision() {
+        let mut check = TorqueResponseCheck::<f32>::new();
+        check.votes = 3;
+        check.response = TorqueResponse::Tested;
+        check.interrupt();
+        assert_eq!((check.votes, check.response()), (3, TorqueResponse::Unknown));
+        check.response = TorqueResponse::Reversed;
+        check.interrupt();
+        assert_eq!(check.response(), TorqueResponse::Reversed);
+    }
+}

@@ -159,3 +159,82 @@ impl<T: Real, const P: usize> Batch<T, P> {
         self.contact.flank = flank;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::regressors::PLAIN;
+    use super::*;
+    use crate::observer::test_tables::learner;
+
+    const DRIVE: Option<Flank> = Some(Flank::Drive);
+
+    /// Adds an interval with a deflection and a force.
+    fn add(batch: &mut Batch<f32, PLAIN>, dwell: Dwell, deflection: f32, force: f32) -> bool {
+        let (open_gap, mesh) = ([0.0; PLAIN], [0.0, 1.0]);
+        let sample = IntervalSample { open_gap: &open_gap, mesh: &mesh, raw_deflection: deflection, force };
+        batch.add(&sample, dwell, 2, &learner())
+    }
+
+    /// Adds `intervals` on the drive flank.
+    fn fill(batch: &mut Batch<f32, PLAIN>, intervals: u8) -> bool {
+        (0..intervals).fold(false, |_, _| add(batch, Dwell::On(DRIVE), 4.0, 10.0))
+    }
+
+    #[test]
+    fn full_batch_is_mean() {
+        let mut batch = Batch::new();
+        assert!(!fill(&mut batch, 7));
+        assert!(add(&mut batch, Dwell::On(DRIVE), 12.0, 10.0));
+        let (regressors, deflection) = batch.measurement();
+        assert_eq!((deflection, regressors[0], regressors[2]), (5.0, 1.0, 10.0));
+        assert_eq!(batch.relative_weight(&learner(), true), 1.0);
+    }
+
+    #[test]
+    fn early_end_gives_mean_with_less_weight() {
+        let mut batch = Batch::new();
+        fill(&mut batch, 2);
+        assert!(add(&mut batch, Dwell::No, 0.0, 0.0));
+        let (regressors, deflection) = batch.measurement();
+        assert_eq!((deflection, regressors[2]), (4.0, 10.0));
+        assert_eq!(batch.relative_weight(&learner(), false), 0.25);
+        assert!((batch.relative_weight(&learner(), true) - 0.25).abs() < 1e-6, "half of sqrt(2/8)");
+    }
+
+    #[test]
+    fn contact_below_shortest_is_discarded() {
+        let mut batch = Batch::new();
+        fill(&mut batch, 1);
+        assert!(!add(&mut batch, Dwell::No, 0.0, 0.0));
+        assert_eq!(batch.flank(), None);
+    }
+
+    #[test]
+    fn other_flank_begins_new_batch() {
+        let mut batch = Batch::new();
+        fill(&mut batch, 7);
+        assert!(!add(&mut batch, Dwell::On(Some(Flank::Back)), -4.0, -10.0));
+        assert_eq!(batch.flank(), Some(Flank::Back));
+        assert!(!fill(&mut batch, 7));
+        assert!(fill(&mut batch, 1));
+    }
+
+    #[test]
+    fn unknown_flank_continues_batch() {
+        let mut batch = Batch::new();
+        fill(&mut batch, 4);
+        let full = (0..4).fold(false, |_, _| add(&mut batch, Dwell::On(None), 4.0, 10.0));
+        assert!(full);
+        assert_eq!(batch.flank(), DRIVE);
+    }
+
+    #[test]
+    fn force_variation_below_noise_is_constant() {
+        let mut forces = ForceStatistics::<f32>::NONE;
+        assert_eq!(forces.update(1, 10.0, 1.0), 10.0);
+        assert_eq!(forces.update(2, 11.0, 1.0), 10.5, "a variance of 1/4 is noise");
+        let mut forces = ForceStatistics::<f32>::NONE;
+        forces.update(1, 0.0, 1.0);
+        assert_eq!(forces.update(2, 20.0, 1.0), 10.0 + 10.0 * (1.0 - 1.0 / 100.0));
+    }
+}

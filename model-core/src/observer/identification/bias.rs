@@ -89,3 +89,75 @@ impl<T: Real> TorqueBias<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::contact;
+
+    #[test]
+    fn direction_is_proportional_at_low_speed() {
+        let directions = [0.25, 0.5, 5.0, -5.0].map(|speed: f32| TorqueBias::direction(&contact(), speed));
+        assert_eq!(directions, [0.5, 1.0, 1.0, -1.0]);
+    }
+
+    #[test]
+    fn motion_both_ways_separates_bias_and_friction() {
+        let mut bias = TorqueBias::new(&contact());
+        for _ in 0..200 {
+            bias.update(&contact(), 3.0, 1.0);
+            bias.update(&contact(), -1.0, -1.0);
+        }
+        assert!((bias.bias - 1.0).abs() < 0.02 && (bias.friction - 2.0).abs() < 0.02, "{bias:?}");
+        assert!((bias.force_at(-1.0) + 1.0).abs() < 0.04);
+    }
+
+    #[test]
+    fn outlier_is_rejected() {
+        // The innovation has the variance 1 + 4 + 4.
+        let mut bias = TorqueBias::<f32>::new(&contact());
+        bias.update(&contact(), 12.1, 1.0);
+        assert_eq!(bias.bias, 0.0);
+        bias.update(&contact(), 11.9, 1.0);
+        assert!(bias.bias > 5.0);
+    }
+
+    #[test]
+    fn bias_is_limited() {
+        let mut bias = TorqueBias::<f32>::new(&contact());
+        (0..1000).for_each(|_| {
+            bias.variance = [100.0, 0.0, 0.0];
+            bias.update(&contact(), 20.0, 0.0);
+        });
+        assert_eq!(bias.bias, contact().bias_limit);
+    }
+
+    #[test]
+    fn friction_is_never_negative() {
+        let mut bias = TorqueBias::<f32>::new(&contact());
+        for _ in 0..100 {
+            bias.update(&contact(), -2.0, 1.0);
+            bias.update(&contact(), 2.0, -1.0);
+        }
+        assert_eq!(bias.friction, 0.0);
+    }
+
+    #[test]
+    fn variance_grows_up_to_prior() {
+        let mut bias = TorqueBias::<f32>::new(&contact());
+        bias.variance = [3.8, 1.0, 0.0];
+        bias.inflate_variance(&contact());
+        bias.inflate_variance(&contact());
+        assert_eq!(bias.variance, [4.3, 2.0, 0.0]);
+        assert!(bias.is_in_range(&contact()));
+        bias.variance[0] = 4.6;
+        assert!(!bias.is_in_range(&contact()));
+    }
+
+    #[test]
+    fn saved_nan_is_out_of_range() {
+        let mut bias = TorqueBias::<f32>::new(&contact());
+        bias.bias = f32::NAN;
+        assert!(!bias.is_in_range(&contact()));
+    }
+}

@@ -91,3 +91,78 @@ impl<T: Real> CoMotion<T> {
         Some(if self.span > T::ZERO { Flank::Drive } else { Flank::Back })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Co-motion after a crossing by a span, and `blocks` in which the link accelerates by a unit of travel each.
+    fn crossed(span: f32, blocks: u8) -> CoMotion<f32> {
+        let mut co_motion = CoMotion::NONE;
+        co_motion.step(DeflectionChange::Crossed, span, 0.0, true, true);
+        for _ in 0..blocks {
+            co_motion.step(DeflectionChange::Stays, 0.0, 1.0, true, true);
+        }
+        co_motion
+    }
+
+    #[test]
+    fn crossing_proves_part_of_half_gap() {
+        assert_eq!(crossed(80.0, 0).half_gap_at_least(20.0), 30.0);
+        assert_eq!(crossed(-80.0, 0).half_gap_at_least(40.0), 40.0);
+    }
+
+    #[test]
+    fn departure_beyond_limit_shows_flank() {
+        assert_eq!(crossed(1.0, 8).flank(), None);
+        assert_eq!(crossed(1.0, 9).flank(), Some(Flank::Drive));
+        assert_eq!(crossed(-1.0, 9).flank(), Some(Flank::Back));
+    }
+
+    #[test]
+    fn drift_hides_flank() {
+        let mut co_motion = crossed(1.0, 9);
+        co_motion.step(DeflectionChange::Stays, 0.124, 1.0, true, true);
+        assert_eq!(co_motion.flank(), Some(Flank::Drive));
+        co_motion.step(DeflectionChange::Stays, 0.002, 1.0, true, true);
+        assert_eq!(co_motion.flank(), None);
+    }
+
+    #[test]
+    fn hidden_crossing_clears_span() {
+        let mut co_motion = crossed(1.0, 9);
+        co_motion.step(DeflectionChange::Hidden, 0.0, 1.0, true, true);
+        assert_eq!(co_motion.half_gap_at_least(0.1), 0.1);
+    }
+
+    #[test]
+    fn interruption_restarts_departure() {
+        let mut co_motion = crossed(1.0, 9);
+        co_motion.step(DeflectionChange::Stays, 0.0, 5.0, false, true);
+        assert_eq!(co_motion.flank(), None);
+        co_motion.step(DeflectionChange::Stays, 0.0, 14.0, true, true);
+        assert_eq!(co_motion.flank(), Some(Flank::Drive), "9 beyond the new initial travel");
+    }
+
+    #[test]
+    fn stationary_link_does_not_depart() {
+        let mut co_motion = crossed(1.0, 0);
+        (0..20).for_each(|_| co_motion.step(DeflectionChange::Stays, 0.0, 1.0, true, false));
+        assert_eq!(co_motion.flank(), None);
+    }
+
+    #[test]
+    fn opposite_force_clears_span() {
+        let mut co_motion = crossed(80.0, 0);
+        co_motion.confirm_flank(Flank::Drive);
+        assert_eq!(co_motion.half_gap_at_least(0.0), 30.0);
+        co_motion.confirm_flank(Flank::Back);
+        assert_eq!(co_motion.half_gap_at_least(0.0), 0.0);
+    }
+
+    #[test]
+    fn departure_of_eight_gaps_proves_contact() {
+        assert!(!crossed(1.0, 16).proves_contact(1.0));
+        assert!(crossed(1.0, 17).proves_contact(1.0));
+    }
+}

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_narrower_gap_is_another_place_three_times() {
+    fn narrower_gap_is_variation_three_times() {
         let mut consistency = trusted();
         for _ in 0..CONSISTENCY.variation_errors {
             assert_eq!(
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn sound_rests_make_it_forgotten() {
+    fn accepted_dwells_clear_variation_errors() {
         let mut consistency = trusted();
         for _ in 0..3 * CONSISTENCY.variation_errors {
             assert_eq!(
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn teeth_do_not_grow_by_half_of_the_gap() {
+    fn gap_narrower_by_half_is_encoder_fault() {
         assert_eq!(lasting_force(&mut trusted(), DeviationSize::BeyondVariation), ParameterAction::OutputEncoderFault);
         assert_eq!(
             lasting_force(&mut Consistency::default(), DeviationSize::WithinVariation),
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn force_that_comes_and_goes_says_nothing() {
+    fn interrupted_gap_force_is_ignored() {
         let mut consistency = trusted();
         for interval in 0..10 * u32::from(CONSISTENCY.gap_force_intervals) {
             let force =
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn two_outliers_are_another_place_or_another_half_gap() {
+    fn two_outliers_inflate_or_reset_half_gap() {
         assert_eq!(outliers(&mut trusted(), DeviationSize::WithinTolerance), ParameterAction::Keep);
         assert_eq!(outliers(&mut trusted(), DeviationSize::WithinVariation), ParameterAction::InflateHalfGap);
         let mut consistency = trusted();
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn many_outliers_speak_against_the_encoder() {
+    fn many_outliers_are_encoder_fault() {
         let (mut trusted, mut untrusted) = (Consistency::default(), Consistency::default());
         for _ in 1..CONSISTENCY.outliers_until_all {
             assert_ne!(trusted.reject(DeviationSize::WithinTolerance, true), ParameterAction::OutputEncoderFault);

@@ -100,3 +100,109 @@ fn loaded_flank_by_force<T: Real>(evidence: &FlankEvidence<'_, T>, interval: &In
 pub fn shortest_contact<T: Real>(uncertainty: &Uncertainty<T>, table: &LearnerTable<T>) -> u8 {
     if uncertainty.half_gap_is_known { FLANK.shortest_contact } else { (table.block as u8).div_ceil(2) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::learner;
+
+    const DRIVE: Option<Flank> = Some(Flank::Drive);
+
+    /// Deviations of 1 N; the half-gap is known if `is_known`.
+    fn uncertainty(is_known: bool) -> Uncertainty<f32> {
+        let mut uncertainty = Uncertainty::uninitialized();
+        uncertainty.steady_force_deviation = 1.0;
+        uncertainty.mean_force_deviation = 1.0;
+        uncertainty.combined_deviation = 1.0;
+        uncertainty.half_gap_is_known = is_known;
+        uncertainty
+    }
+
+    /// Evidence of a force on teeth at a deflection, in a half-gap of 80 um.
+    fn evidence(uncertainty: &Uncertainty<f32>, deflection: f32, force: f32) -> FlankEvidence<'_, f32> {
+        let position = GapPosition {
+            deflection,
+            travel: 0.0,
+            half_gap: 80e-6,
+            blur: 10e-6,
+            near: 0.0,
+            stiffness: 5e6,
+            weight: 0.0,
+        };
+        FlankEvidence { uncertainty, position, force, compliance: 1e-6 }
+    }
+
+    fn interval(steady_force: f32) -> Interval<f32> {
+        let mut interval = Interval::new();
+        interval.steady_force = steady_force;
+        interval
+    }
+
+    #[test]
+    fn unknown_half_gap_needs_three_deviations() {
+        let uncertainty = uncertainty(false);
+        let evidence = evidence(&uncertainty, 0.0, 0.0);
+        assert_eq!(settled_flank(&evidence, &interval(3.0), true), None);
+        assert_eq!(settled_flank(&evidence, &interval(3.1), true), DRIVE);
+        assert_eq!(settled_flank(&evidence, &interval(-3.1), true), Some(Flank::Back));
+    }
+
+    #[test]
+    fn settled_flank_is_kept_above_two_deviations() {
+        let uncertainty = uncertainty(false);
+        let evidence = evidence(&uncertainty, 0.0, 0.0);
+        let settled = |steady_force| {
+            let mut interval = interval(steady_force);
+            interval.settled_flank = DRIVE;
+            settled_flank(&evidence, &interval, true)
+        };
+        assert_eq!((settled(2.1), settled(2.0), settled(-2.1)), (DRIVE, None, None));
+    }
+
+    #[test]
+    fn known_half_gap_decides_by_deflection() {
+        let uncertainty = uncertainty(true);
+        let far = interval(100.0);
+        assert_eq!(settled_flank(&evidence(&uncertainty, 60e-6, 100.0), &far, true), None);
+        assert_eq!(settled_flank(&evidence(&uncertainty, 85e-6, 3.0), &far, true), DRIVE);
+        assert_eq!(settled_flank(&evidence(&uncertainty, 60e-6, 100.0), &far, false), DRIVE, "no output encoder");
+    }
+
+    #[test]
+    fn rising_force_is_not_loaded() {
+        let uncertainty = uncertainty(true);
+        let evidence = evidence(&uncertainty, 85e-6, 10.0);
+        // A rise of 8 N lags by 8 N x 1 um/N x 0.5 = 4 um, four deviations.
+        assert_eq!(loaded_flank(&evidence, &interval(0.0), &learner(), 7.9), DRIVE);
+        assert_eq!(loaded_flank(&evidence, &interval(0.0), &learner(), -8.1), None);
+    }
+
+    #[test]
+    fn loaded_flank_needs_force_and_deflection() {
+        let uncertainty = uncertainty(true);
+        let loaded = |deflection, force| {
+            loaded_flank(&evidence(&uncertainty, deflection, force), &interval(0.0), &learner(), 0.0)
+        };
+        assert_eq!(loaded(85e-6, 3.0), None);
+        assert_eq!(loaded(85e-6, 3.1), DRIVE);
+        assert_eq!(loaded(85e-6, -3.1), None);
+        assert_eq!(loaded(-85e-6, -3.1), Some(Flank::Back));
+    }
+
+    #[test]
+    fn loaded_flank_by_force_needs_steady_force() {
+        let uncertainty = uncertainty(false);
+        let loaded =
+            |steady, force| loaded_flank(&evidence(&uncertainty, 0.0, force), &interval(steady), &learner(), 0.0);
+        assert_eq!(loaded(4.1, 2.1), DRIVE);
+        assert_eq!(loaded(3.9, 2.1), None);
+        assert_eq!(loaded(4.1, 1.9), None);
+        assert_eq!(loaded(4.1, -2.1), None);
+    }
+
+    #[test]
+    fn shortest_contact_depends_on_half_gap() {
+        assert_eq!(shortest_contact(&uncertainty(true), &learner()), FLANK.shortest_contact);
+        assert_eq!(shortest_contact(&uncertainty(false), &learner()), 4, "half of 8 intervals");
+    }
+}

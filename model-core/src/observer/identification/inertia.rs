@@ -142,3 +142,80 @@ fn high_pass<T: Real>(slow: &mut [T; 2], part: T, value: T) -> T {
         value - *slow
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> InertiaTable<f32> {
+        InertiaTable {
+            per_periods: 0.1,
+            still: [[0.0; 4], [0.0; 4], [0.0, 0.0, 0.0, 1.0]],
+            slow: 0.1,
+            moving: 0.1,
+            settled_after: 3,
+            least: 1.0,
+            noise: 1.0,
+            most_restless: 1.0,
+            memory: 0.5,
+            prior: 0.09,
+            limit: 0.9,
+            known: 0.02,
+            drift: 0.001,
+        }
+    }
+
+    /// Link of the given mobility that answers mesh torques of alternating sign while it turns forwards.
+    fn shaken(mobility: f32, intervals: u16, is_usable: bool) -> LinkInertia<f32> {
+        let mut inertia = LinkInertia::new(&table());
+        inertia.external_variance = 0.0;
+        let mut load = LoadSide { angle_residual: 0.0, speed: 1.0, torque: 0.0 };
+        for interval in 0..intervals {
+            let torque = if interval % 2 == 0 { 100.0 } else { -100.0 };
+            inertia.mesh_torque_for_load(10.0 * torque);
+            load.torque = (inertia.mobility - mobility) * torque;
+            inertia.update(&table(), &mut load, is_usable);
+        }
+        inertia
+    }
+
+    #[test]
+    fn mesh_torque_is_scaled_by_mobility() {
+        let mut inertia = LinkInertia::<f32>::new(&table());
+        inertia.mobility = 0.5;
+        assert_eq!(inertia.mesh_torque_for_load(4.0), 2.0);
+        let [ratio, variance] = inertia.ratio();
+        assert!(ratio == 2.0 && (variance - 0.09 * 16.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn unusable_interval_keeps_mobility() {
+        assert_eq!(shaken(0.8, 50, false).mobility, 1.0);
+    }
+
+    #[test]
+    fn mobility_follows_response() {
+        let inertia = shaken(0.98, 60, true);
+        assert!((inertia.mobility - 0.98).abs() < 0.01, "{}", inertia.mobility);
+    }
+
+    #[test]
+    fn reversal_waits_for_slow_parts() {
+        assert_eq!(shaken(0.98, u16::try_from(table().settled_after).unwrap_or(0) - 1, true).mobility, 1.0);
+    }
+
+    #[test]
+    fn mobility_is_limited() {
+        assert_eq!(limit_mobility(&table(), 5.0), 1.9);
+        assert!((limit_mobility(&table(), -5.0) - 0.1_f32).abs() < 1e-6);
+    }
+
+    #[test]
+    fn high_pass_removes_constant() {
+        let mut slow = [0.0; 2];
+        let first: f32 = high_pass(&mut slow, 0.1, 1.0);
+        assert!(first > 0.8);
+        let last: f32 = (0..500).fold(first, |_, _| high_pass(&mut slow, 0.1, 1.0));
+        assert!(last.abs() < 1e-3, "{last}");
+    }
+}

@@ -117,3 +117,35 @@ pub enum Task {
 pub fn is_settled<T: Real>(travel: Travel<T>) -> bool {
     matches!(travel, Travel::AtRest(intervals) if intervals >= FLANK.settled_intervals)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rest_settles_after_limit() {
+        assert!(!is_settled(Travel::<f32>::AtRest(FLANK.settled_intervals - 1)));
+        assert!(is_settled(Travel::<f32>::AtRest(FLANK.settled_intervals)));
+        assert!(!is_settled(Travel::<f32>::Undecided) && !is_settled(Travel::Crossing(1.0, 1.0)));
+    }
+
+    #[test]
+    fn closed_interval_is_mean() {
+        let mut interval = Interval::<f32>::new();
+        for force in [1.0, 3.0] {
+            interval.add(&MeshMeasurement {
+                flank_shift: 0.0,
+                raw_deflection: 2.0,
+                deflection: 0.0,
+                rate: 0.0,
+                travel: 0.0,
+                motor_force: force,
+                direction: 1.0,
+                force,
+            });
+        }
+        let mean = interval.close(0.5);
+        assert_eq!((mean.force, mean.raw_deflection, interval.periods), (2.0, 2.0, 0));
+        assert_eq!(interval.close(0.5).force, 0.0);
+    }
+}

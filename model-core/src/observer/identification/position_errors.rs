@@ -98,3 +98,46 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::learner;
+
+    /// Least squares whose motor map is 1 um sin, at a motor phase of zero.
+    fn mapped() -> (LeastSquares<f32, MAPPED>, Regressors<f32, MAPPED>) {
+        let mut least_squares = LeastSquares::uninitialized();
+        least_squares.reset(&learner());
+        least_squares.values[PLAIN] = 1e-6;
+        let mut open_gap = [0.0; MAPPED];
+        (open_gap[PLAIN + 1], open_gap[PLAIN + 3]) = (1.0, 1.0);
+        (least_squares, open_gap)
+    }
+
+    #[test]
+    fn turn_beyond_limit_needs_exact_errors() {
+        let mut errors = PositionErrors::<f32, MAPPED>::new();
+        assert!(!errors.advance(0.2, 0.0, 90.0));
+        assert!(!errors.advance(-0.04, 0.0, 90.0));
+        assert!(errors.advance(0.0, 2e-4, 90.0), "a mesh phase of 0.018 rad more");
+    }
+
+    #[test]
+    fn slope_follows_map() {
+        let (least_squares, open_gap) = mapped();
+        let mut errors = PositionErrors::new();
+        errors.set_exact(&least_squares, &open_gap, [0.0, 1.0]);
+        errors.advance(0.1, 0.0, 90.0);
+        assert!((errors.errors[0] - 0.1e-6).abs() < 1e-12, "{:?}", errors.errors);
+        errors.set_exact(&least_squares, &open_gap, [0.0, 1.0]);
+        assert_eq!(errors.errors[0], 0.0);
+    }
+
+    #[test]
+    fn mesh_phase_keeps_amplitude() {
+        let mut errors = PositionErrors::<f32, MAPPED>::new();
+        (0..10_000).for_each(|_| _ = errors.advance(0.0, 1e-3, 90.0));
+        let [sine, cosine] = errors.mesh;
+        assert!((sine * sine + cosine * cosine - 1.0).abs() < 0.1);
+    }
+}

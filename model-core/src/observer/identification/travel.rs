@@ -113,3 +113,89 @@ impl<T: Real> TravelDetector<T> {
         self.limit < half_gap * Self::LIMITS.hidden_motion
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::contact;
+
+    const UM: f32 = 1e-6;
+
+    /// Steps a detector through deflections [um] at constant force and returns the last result.
+    fn steps(detector: &mut TravelDetector<f32>, deflections: impl IntoIterator<Item = f32>) -> Travel<f32> {
+        let mut travel = Travel::Undecided;
+        for deflection in deflections {
+            travel = detector.step(&contact(), deflection * UM, (2.0, 0.5), 0.0, 0.0);
+        }
+        travel
+    }
+
+    #[test]
+    fn short_history_is_undecided() {
+        assert_eq!(steps(&mut TravelDetector::new(), [0.0; WINDOW]), Travel::Undecided);
+        assert_eq!(steps(&mut TravelDetector::new(), [0.0; WINDOW + 1]), Travel::AtRest(1));
+    }
+
+    #[test]
+    fn change_below_noise_is_rest() {
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW]);
+        assert_eq!(steps(&mut detector, [7.9]), Travel::AtRest(1));
+        assert_eq!(steps(&mut detector, [-7.9]), Travel::AtRest(2));
+        assert_eq!(steps(&mut detector, [8.1]), Travel::Undecided);
+        assert_eq!(steps(&mut detector, [0.0]), Travel::AtRest(1));
+    }
+
+    #[test]
+    fn steady_motion_is_crossing() {
+        for sign in [1.0, -1.0] {
+            let travel = steps(&mut TravelDetector::new(), (0..20).map(|interval| sign * 3.0 * interval as f32));
+            assert_eq!(travel, Travel::Crossing(2.0, 0.5));
+        }
+    }
+
+    #[test]
+    fn jump_is_undecided() {
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW + 1]);
+        assert_eq!(steps(&mut detector, [100.0; 3]), Travel::Undecided);
+    }
+
+    #[test]
+    fn reversal_is_undecided() {
+        let there_and_back = (0..5).map(|interval| 10.0 * interval as f32).chain([30.0, 25.0, 20.0, 15.0]);
+        assert_eq!(steps(&mut TravelDetector::new(), there_and_back), Travel::Undecided);
+    }
+
+    #[test]
+    fn blur_widens_rest() {
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW]);
+        assert_eq!(detector.step(&contact(), 15.9 * UM, (2.0, 0.0), UM, 0.0), Travel::AtRest(1));
+    }
+
+    #[test]
+    fn changed_force_widens_rest() {
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW]);
+        assert_eq!(detector.step(&contact(), 15.9 * UM, (10.0, 0.0), 0.0, UM), Travel::AtRest(1));
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW]);
+        assert_eq!(detector.step(&contact(), 16.1 * UM, (10.0, 0.0), 0.0, UM), Travel::Undecided);
+    }
+
+    #[test]
+    fn deflection_of_nan_is_undecided() {
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW]);
+        assert_eq!(steps(&mut detector, [f32::NAN]), Travel::Undecided);
+    }
+
+    #[test]
+    fn rest_differs_from_crossing_in_wide_gap() {
+        let mut detector = TravelDetector::new();
+        steps(&mut detector, [0.0; WINDOW + 1]);
+        assert!(detector.distinguishes_rest(32.1 * UM), "noise hides 8 um, a quarter of the half-gap");
+        assert!(!detector.distinguishes_rest(31.9 * UM));
+    }
+}

@@ -36,3 +36,26 @@ impl<T: Real, const P: usize> TrustedParameters<T, P> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::regressors::{COMPLIANCE, PLAIN};
+    use super::*;
+    use crate::observer::test_tables::learner;
+
+    #[test]
+    fn restored_parameters_replace_later_ones() {
+        let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+        least_squares.reset(&learner());
+        least_squares.values[HALF_GAP] = 80e-6;
+        least_squares.set_relative_variance(HALF_GAP, 0.01);
+        least_squares.set_relative_variance(COMPLIANCE, 0.02);
+        let trusted = TrustedParameters::snapshot(&least_squares);
+        least_squares.values[HALF_GAP] = 10e-6;
+        least_squares.set_relative_variance(HALF_GAP, 0.001);
+        trusted.restore(&mut least_squares);
+        assert_eq!(least_squares.value(HALF_GAP), 80e-6);
+        assert_eq!(least_squares.relative_variance(HALF_GAP), 0.01);
+        assert_eq!(least_squares.relative_variance(COMPLIANCE), 1.0, "no copy of other variances exists");
+    }
+}

@@ -392,11 +392,11 @@ impl Counts {
 
 #[cfg(test)]
 mod tests {
-    use super::{half, quotient};
+    use super::*;
     use crate::numbers::random::splitmix64;
 
     #[test]
-    fn quotients_are_the_language_s() {
+    fn quotient_equals_checked_div() {
         let mut state = 3;
         let mut any = || (splitmix64(&mut state) as i64) >> (splitmix64(&mut state) % 64);
         let ends = [0, 1, -1, i64::from(u32::MAX), 1 << 32, i64::MAX, i64::MIN + 1];
@@ -405,5 +405,92 @@ mod tests {
             assert_eq!(quotient(units, part), units.checked_div(part), "{units} by {part}");
             assert_eq!(half(units), units / 2, "half of {units}");
         }
+    }
+
+    /// Encoder of 1000 counts per turn that moves by at most 100 counts per period.
+    fn encoder() -> EncoderTable<f32> {
+        EncoderTable {
+            turn: 1000,
+            wraps_at: 1000,
+            last: 999,
+            phase: u64::MAX / 1000,
+            fastest: 100,
+            angle: 6.283e-3,
+            fraction: 1e-3,
+            turns: 0.159,
+        }
+    }
+
+    fn began(raw: u32) -> (Counter, EncoderTable<f32>) {
+        let (mut counter, table) = (Counter::default(), encoder());
+        assert_eq!(counter.read(&table, raw), CountChange::First);
+        (counter, table)
+    }
+
+    #[test]
+    fn shortest_difference_wraps_either_way() {
+        let table = encoder();
+        assert_eq!(shortest_difference(10, 990, &table), 20);
+        assert_eq!(shortest_difference(990, 10, &table), -20);
+        assert_eq!(shortest_difference(499, 0, &table), 499);
+        let wide = EncoderTable { wraps_at: 0, last: u32::MAX, ..table };
+        assert_eq!(shortest_difference(5, u32::MAX, &wide), 6);
+    }
+
+    #[test]
+    fn travel_at_limit_is_accepted() {
+        let (mut counter, table) = began(0);
+        assert_eq!(counter.read(&table, table.fastest), CountChange::By(100));
+        assert_eq!(counter.read(&table, 0), CountChange::By(-100));
+        assert_eq!(counter.read(&table, table.fastest + 1), CountChange::Implausible);
+        assert_eq!(counter.place(), 0);
+    }
+
+    #[test]
+    fn distant_reading_repeated_is_jump() {
+        let (mut counter, table) = began(0);
+        for _ in 0..COUNTS.rejections_before_jump {
+            assert_eq!(counter.read(&table, 450), CountChange::Implausible);
+        }
+        assert_eq!(counter.read(&table, 450), CountChange::Jumped(450));
+        assert_eq!(counter.place(), 450);
+    }
+
+    #[test]
+    fn reading_after_rejection_may_be_farther() {
+        let (mut counter, table) = began(0);
+        assert_eq!(counter.read(&table, 300), CountChange::Implausible);
+        assert_eq!(counter.read(&table, 2 * table.fastest), CountChange::By(200));
+    }
+
+    #[test]
+    fn position_counts_turns_either_way() {
+        let (mut counter, table) = began(950);
+        counter.read(&table, 20);
+        assert_eq!((counter.turns(), counter.place()), (1, 20));
+        counter.read(&table, 980);
+        assert_eq!((counter.turns(), counter.place()), (0, 980));
+    }
+
+    #[test]
+    fn raw_count_out_of_range_is_reduced() {
+        let (mut counter, table) = began(10);
+        assert_eq!(counter.read(&table, 1015), CountChange::By(5));
+        assert_eq!(counter.read(&EncoderTable { wraps_at: 0, ..table }, 1020), CountChange::Implausible);
+    }
+
+    #[test]
+    fn floor_division_has_no_negative_remainder() {
+        assert_eq!((floor_div(-7, 3), floor_mod(-7, 3)), (-3, 2));
+        assert_eq!((floor_div(7, 3), floor_mod(7, 3)), (2, 1));
+        assert_eq!((floor_div(7, 0), floor_mod(7, 0)), (0, 7));
+    }
+
+    #[test]
+    fn range_multiple_is_nearest() {
+        let table = encoder();
+        assert_eq!(nearest_range_multiple(2 * 1499, &table, 2), 1000);
+        assert_eq!(nearest_range_multiple(2 * 1500, &table, 2), 2000);
+        assert_eq!(nearest_range_multiple(-2 * 600, &table, 2), -1000);
     }
 }

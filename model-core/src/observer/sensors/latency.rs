@@ -78,3 +78,78 @@ impl Latency {
         self.lateness > LATENCY.tolerated_late_periods
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD: u32 = 1000;
+
+    /// Latency after `late` late readings.
+    fn after_late(late: u8) -> Latency {
+        let mut latency = Latency::default();
+        latency.step(Some(PERIOD + 100), PERIOD);
+        latency.lateness = 0;
+        for _ in 0..late {
+            assert_eq!(latency.step(Some(PERIOD + 100), PERIOD), SampleAge::Late);
+        }
+        latency
+    }
+
+    #[test]
+    fn age_below_period_is_fresh() {
+        let mut latency = Latency::default();
+        assert_eq!(latency.step(Some(0), PERIOD), SampleAge::Fresh);
+        assert_eq!(latency.step(Some(PERIOD - 1), PERIOD), SampleAge::Fresh);
+        assert_ne!(latency.step(Some(PERIOD), PERIOD), SampleAge::Fresh);
+    }
+
+    #[test]
+    fn age_rising_by_period_is_repeated() {
+        let mut latency = Latency::default();
+        assert_eq!(latency.step(Some(PERIOD), PERIOD), SampleAge::Repeated);
+        assert_eq!(latency.step(Some(2 * PERIOD), PERIOD), SampleAge::Repeated);
+        assert_eq!(latency.step(Some(3 * PERIOD), PERIOD), SampleAge::RepeatedForLong);
+    }
+
+    #[test]
+    fn age_rising_below_limit_is_late() {
+        let mut latency = Latency::default();
+        latency.step(Some(PERIOD), PERIOD);
+        // 16 parts of a period before; 12 parts more are a repetition, 11 are not.
+        assert_eq!(latency.step(Some(PERIOD * 27 / 16), PERIOD), SampleAge::Late);
+        let mut latency = Latency::default();
+        latency.step(Some(PERIOD), PERIOD);
+        assert_eq!(latency.step(Some(PERIOD * 28 / 16), PERIOD), SampleAge::Repeated);
+    }
+
+    #[test]
+    fn missing_age_is_unusable() {
+        let mut latency = Latency::default();
+        assert_eq!(latency.step(None, PERIOD), SampleAge::Unusable);
+        assert!(latency.is_persistently_late());
+    }
+
+    #[test]
+    fn late_readings_up_to_limit_are_tolerated() {
+        assert!(!after_late(LATENCY.tolerated_late_periods).is_persistently_late());
+        assert!(after_late(LATENCY.tolerated_late_periods + 1).is_persistently_late());
+    }
+
+    #[test]
+    fn lateness_ends_after_recovery_periods() {
+        let mut latency = after_late(LATENCY.tolerated_late_periods + 1);
+        for _ in 1..LATENCY.recovery_periods {
+            latency.step(Some(0), PERIOD);
+        }
+        assert!(latency.is_persistently_late());
+        latency.step(Some(0), PERIOD);
+        assert!(!latency.is_persistently_late());
+    }
+
+    #[test]
+    fn period_of_zero_does_not_divide() {
+        let mut latency = Latency::default();
+        assert_eq!(latency.step(Some(5), 0), SampleAge::RepeatedForLong);
+    }
+}

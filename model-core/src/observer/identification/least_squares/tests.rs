@@ -2,32 +2,11 @@
 
 use super::super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, PLAIN};
 use super::super::thresholds::LEAST_SQUARES;
-use super::LeastSquares;
-use crate::observer::tables::{LearnerTable, MOST_PARAMETERS};
-
-const DEVIATION: f32 = 1e-3;
-
-fn table() -> LearnerTable<f32> {
-    LearnerTable {
-        periods: 10,
-        per_periods: 0.1,
-        middle: 5,
-        block: 8,
-        per_block: 0.125,
-        span: 1e-3,
-        mean: [0.0; MOST_PARAMETERS],
-        deviation: [DEVIATION; MOST_PARAMETERS],
-        weight: 1e6,
-        noise: 1e-6,
-        force_noise: 1.0,
-        force_lag: 0.0,
-        forgetting: 0.0,
-        mesh_compliance: 0.0,
-    }
-}
+use super::{Innovation, LeastSquares};
+use crate::observer::test_tables::{DEVIATION, learner as table};
 
 #[test]
-fn nothing_but_an_offset_is_believed_beyond_what_can_be() {
+fn parameters_but_offset_are_limited() {
     let table = table();
     let furthest = LEAST_SQUARES.max_deviation as f32 * DEVIATION;
     for parameter in 0..PLAIN {
@@ -47,7 +26,7 @@ fn nothing_but_an_offset_is_believed_beyond_what_can_be() {
 }
 
 #[test]
-fn what_can_be_is_believed() {
+fn parameter_within_limit_is_accepted() {
     let table = table();
     let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
     least_squares.reset(&table);
@@ -59,7 +38,7 @@ fn what_can_be_is_believed() {
 }
 
 #[test]
-fn half_gap_keeps_its_variance_without_places() {
+fn half_gap_keeps_variance_without_positions() {
     // A single flank shows the sum of half-gap and offset: half of either variance remains.
     let table = table();
     let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
@@ -72,4 +51,82 @@ fn half_gap_keeps_its_variance_without_places() {
     let [half_gap, offset] = [HALF_GAP, OFFSET].map(|parameter| least_squares.relative_variance(parameter));
     assert!((half_gap - 0.5).abs() < 1e-3, "{half_gap}");
     assert_eq!(offset, 1.0);
+}
+
+/// Least squares after an exact measurement of one parameter.
+fn measured(parameter: usize, value: f32) -> LeastSquares<f32, PLAIN> {
+    let table = table();
+    let mut least_squares = LeastSquares::uninitialized();
+    least_squares.reset(&table);
+    let mut regressors = [0.0; PLAIN];
+    regressors[parameter] = 1.0;
+    let innovation = least_squares.innovation(&table, &regressors, value, table.weight);
+    least_squares.update(&table, &innovation);
+    least_squares
+}
+
+#[test]
+fn negative_half_gap_is_limited_to_zero() {
+    assert_eq!(measured(HALF_GAP, -1e-3).value(HALF_GAP), 0.0);
+}
+
+#[test]
+fn update_reduces_variance_of_measured_parameter() {
+    let least_squares = measured(COMPLIANCE, 1e-3);
+    assert!(least_squares.relative_variance(COMPLIANCE) < 1e-5);
+    assert_eq!(least_squares.relative_variance(HALF_GAP), 1.0);
+}
+
+#[test]
+fn inflation_ends_at_initial_variance() {
+    let mut least_squares = measured(COMPLIANCE, 1e-3);
+    let before = least_squares.relative_variance(COMPLIANCE);
+    least_squares.inflate(0.5);
+    assert!((least_squares.relative_variance(COMPLIANCE) / before - 1.5).abs() < 1e-5);
+    (0..100).for_each(|_| least_squares.inflate(0.5));
+    assert_eq!(least_squares.relative_variance(COMPLIANCE), 1.0);
+}
+
+#[test]
+fn inflated_half_gap_ends_at_initial_variance() {
+    let table = table();
+    let mut least_squares = measured(HALF_GAP, 2e-3);
+    least_squares.inflate_half_gap(&table, 0.125);
+    let variance = least_squares.relative_variance(HALF_GAP);
+    assert!((variance - 0.0625).abs() < 1e-3, "(0.125 x 2 deviations)^2: {variance}");
+    least_squares.inflate_half_gap(&table, 0.6);
+    assert_eq!(least_squares.relative_variance(HALF_GAP), 1.0);
+}
+
+#[test]
+fn reset_of_half_gap_keeps_other_variances() {
+    let mut least_squares = measured(COMPLIANCE, 1e-3);
+    let compliance = least_squares.relative_variance(COMPLIANCE);
+    least_squares.set_relative_variance(HALF_GAP, 0.1);
+    least_squares.reset_half_gap_variance();
+    assert_eq!(least_squares.relative_variance(HALF_GAP), 1.0);
+    assert_eq!(least_squares.relative_variance(COMPLIANCE), compliance);
+}
+
+#[test]
+fn motor_slip_keeps_half_gap_variance() {
+    let table = table();
+    let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+    least_squares.reset(&table);
+    let mut regressors = [0.0; PLAIN];
+    (regressors[HALF_GAP], regressors[OFFSET]) = (1.0, 1.0);
+    let innovation = least_squares.innovation(&table, &regressors, 0.0, table.weight);
+    least_squares.update(&table, &innovation);
+    let before = least_squares.relative_variance(HALF_GAP);
+    least_squares.reset_motor_variances();
+    assert!((least_squares.relative_variance(HALF_GAP) - before).abs() < 1e-6);
+    assert_eq!(least_squares.relative_variance(OFFSET), 1.0);
+}
+
+#[test]
+fn innovation_is_compared_with_its_deviation() {
+    let innovation = Innovation::<f32, PLAIN> { projected: [0.0; PLAIN], value: 9.9, variance: 4.0 };
+    assert!(innovation.is_within(5));
+    assert!(!Innovation { value: -10.1, ..innovation }.is_within(5));
+    assert!(!Innovation { value: f32::NAN, ..innovation }.is_within(5));
 }

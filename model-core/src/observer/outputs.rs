@@ -8,6 +8,7 @@ use super::health::Health;
 use super::identification::ParameterEstimator;
 use super::identification::mesh_measurement::MeshMeasurement;
 use super::identification::regressors::{MAPPED, OFFSET, SKEW};
+use super::identification::uncertainty::Uncertainty;
 use super::sensors::Sensors;
 use super::sensors::counts::Counter;
 use super::tables::{EncoderTable, ObserverTables};
@@ -157,31 +158,58 @@ pub(super) fn publish_parameters<T: Real, const P: usize>(
     both_encoders: bool,
     estimates: &mut Estimates<T>,
 ) {
-    let limits = ValidityThresholds::<T>::TUNED;
-    let levers = &tables.levers;
-    let uncertainty = &estimator.uncertainty;
-    let [half_gap, compliance] = estimator.half_gap_and_compliance();
-    let (offset, skew) = (estimator.least_squares.value(OFFSET), estimator.least_squares.value(SKEW));
-    let [half_gap_variance, offset_variance, compliance_variance, skew_variance] = uncertainty.variances;
+    publish_torque_variances(tables, &estimator.uncertainty, both_encoders, estimates);
+    publish_tooth_parameters(tables, estimator, both_encoders, estimates);
+    let sun_squared = tables.levers.sun * tables.levers.sun;
+    let max_bias_variance = ValidityThresholds::<T>::TUNED.bias * tables.contact.bias_prior;
+    let motor_estimate = |force: T, variance: T| Estimate {
+        value: force * tables.levers.sun,
+        variance: variance * sun_squared,
+        valid: variance < max_bias_variance,
+    };
     let [bias_variance, friction_variance, _] = estimator.bias.variance;
-    let output_squared = levers.per_output * levers.per_output;
-    let sun_squared = levers.sun * levers.sun;
-    let [_, of_flank] = uncertainty.wind_up_variance;
-    let half_gap_variance = half_gap_variance + of_flank;
-    let local_variance = half_gap_variance + estimator.half_gap_variation_variance(tables);
-    let max_deviation = limits.half_gap * half_gap;
-    let max_bias_variance = limits.bias * tables.contact.bias_prior;
+    estimates.torque_bias = motor_estimate(estimator.bias.bias, bias_variance);
+    estimates.motor_friction = motor_estimate(estimator.bias.friction, friction_variance);
+    let [value, variance] = estimator.inertia.ratio();
+    estimates.link_inertia_ratio = Estimate { value, variance, valid: variance < tables.inertia.known * value * value };
+}
+
+/// Publishes the variances of mesh and load torque, and settled contact.
+fn publish_torque_variances<T: Real>(
+    tables: &ObserverTables<T>,
+    uncertainty: &Uncertainty<T>,
+    both_encoders: bool,
+    estimates: &mut Estimates<T>,
+) {
     let force_deviation = if both_encoders && uncertainty.half_gap_is_usable {
         uncertainty.combined_deviation
     } else {
         uncertainty.force_deviation
     };
-    let mesh_deviation = force_deviation * levers.output;
+    let mesh_deviation = force_deviation * tables.levers.output;
     let [_, load_variance] = tables.load.variance;
-
     estimates.settled = uncertainty.settled;
     estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;
     estimates.load_torque.variance = load_variance;
+}
+
+/// Publishes half-backlash, offset, compliance and skew.
+fn publish_tooth_parameters<T: Real, const P: usize>(
+    tables: &ObserverTables<T>,
+    estimator: &ParameterEstimator<T, P>,
+    both_encoders: bool,
+    estimates: &mut Estimates<T>,
+) {
+    let limits = ValidityThresholds::<T>::TUNED;
+    let levers = &tables.levers;
+    let [half_gap, compliance] = estimator.half_gap_and_compliance();
+    let (offset, skew) = (estimator.least_squares.value(OFFSET), estimator.least_squares.value(SKEW));
+    let [half_gap_variance, offset_variance, compliance_variance, skew_variance] = estimator.uncertainty.variances;
+    let [_, of_flank] = estimator.uncertainty.wind_up_variance;
+    let half_gap_variance = half_gap_variance + of_flank;
+    let local_variance = half_gap_variance + estimator.half_gap_variation_variance(tables);
+    let max_deviation = limits.half_gap * half_gap;
+    let output_squared = levers.per_output * levers.per_output;
     estimates.half_backlash_usable = half_gap > T::ZERO && half_gap_variance < max_deviation * max_deviation;
     estimates.half_backlash = Estimate {
         value: half_gap * T::HALF,
@@ -200,18 +228,6 @@ pub(super) fn publish_parameters<T: Real, const P: usize>(
     };
     estimates.skew =
         Estimate { value: skew * levers.per_output, variance: skew_variance * output_squared, valid: both_encoders };
-    let [value, variance] = estimator.inertia.ratio();
-    estimates.link_inertia_ratio = Estimate { value, variance, valid: variance < tables.inertia.known * value * value };
-    estimates.torque_bias = Estimate {
-        value: estimator.bias.bias * levers.sun,
-        variance: bias_variance * sun_squared,
-        valid: bias_variance < max_bias_variance,
-    };
-    estimates.motor_friction = Estimate {
-        value: estimator.bias.friction * levers.sun,
-        variance: friction_variance * sun_squared,
-        valid: friction_variance < max_bias_variance,
-    };
 }
 
 /// Builds a shaft from its counts and the angle beyond the counts [rad].

@@ -19,6 +19,7 @@ use core::fmt;
 
 use super::judge::WiringJudge;
 use super::tables::WiringTable;
+use super::track::difference;
 use super::verdict::Wiring;
 use crate::numbers::Real;
 use crate::observer::Samples;
@@ -220,7 +221,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         if self.periods < self.table.rest {
             return;
         }
-        let travel = travel_since(positions, self.start);
+        let travel = difference(positions, self.start);
         let is_creeping = |shaft: usize| {
             let most =
                 CHECK.rest_flicker.saturating_add(i64::from(of_shaft(self.table.leg, shaft) >> CHECK.creep_shift));
@@ -262,13 +263,13 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
             self.torque_magnitude = allowed;
             self.held_periods = self.held_periods.saturating_add(1);
         }
-        let travel = travel_since(positions, self.start);
+        let travel = difference(positions, self.start);
         let is_far = self.is_far(travel, self.table.leg);
         let output_moved = of_shaft(travel, 1).saturating_abs() >= JUDGE.min_motion;
         let watched = usize::from(output_moved);
         let window_over = self.window_over();
         if window_over {
-            self.window_travel = of_shaft(travel_since(positions, self.window_start), watched).saturating_abs();
+            self.window_travel = of_shaft(difference(positions, self.window_start), watched).saturating_abs();
             self.window_start = positions;
         }
         if is_far {
@@ -288,7 +289,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         if !self.window_over() {
             return;
         }
-        let travel_along = of_shaft(travel_since(positions, self.window_start), usize::from(self.watches_output))
+        let travel_along = of_shaft(difference(positions, self.window_start), usize::from(self.watches_output))
             .saturating_mul(self.motion_sign);
         self.window_start = positions;
         let braked = travel_along <= (self.window_travel >> CHECK.stopped_shift).max(1);
@@ -306,11 +307,6 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
         over
     }
-}
-
-fn travel_since(positions: [i64; 2], start: [i64; 2]) -> [i64; 2] {
-    let ([motor, output], [motor_start, output_start]) = (positions, start);
-    [motor.saturating_sub(motor_start), output.saturating_sub(output_start)]
 }
 
 fn of_shaft<V: Copy + Default>(of_shafts: [V; 2], shaft: usize) -> V {

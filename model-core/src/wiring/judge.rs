@@ -30,7 +30,7 @@
 use super::line::{Fit, Line};
 use super::tables::WiringTable;
 use super::thresholds::JUDGE;
-use super::track::Track;
+use super::track::{Track, difference};
 use super::verdict::{Wiring, WiringItem, WiringVerdict};
 use crate::numbers::Real;
 use crate::observer::Samples;
@@ -48,6 +48,20 @@ struct BlockState<T: Real> {
     /// `sign`: sign of the torque if constant over the block, otherwise 0. `same_sign_blocks`: consecutive blocks with this sign.
     sign: i32,
     same_sign_blocks: u8,
+}
+
+/// Magnitude of the angle factor `F` with its tolerance, and whether both are known well enough to judge.
+struct AngleFactor<T: Real> {
+    size: T,
+    is_sure: bool,
+    tolerance: T,
+}
+
+impl<T: Real> AngleFactor<T> {
+    /// Returns true if the factor has an expected magnitude.
+    fn matches(&self, expected: T) -> bool {
+        self.is_sure && (self.size - expected).abs() <= self.tolerance * expected
+    }
 }
 
 /// Judge of the wiring of one joint.
@@ -231,24 +245,12 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
 
     fn close_block(&mut self) {
         let table = self.table;
-        let ends = [self.motor.position, self.output.position];
         let before = self.block;
-        let travel = [0, 1].map(|shaft: usize| {
-            let [end, begin] = [&ends, &before.ends].map(|positions| positions.get(shaft).copied().unwrap_or(0));
-            end.saturating_sub(begin)
-        });
-        let moves = |by: i64| {
-            if by >= JUDGE.min_block_travel {
-                1
-            } else if by <= -JUDGE.min_block_travel {
-                -1
-            } else {
-                0
-            }
-        };
-        let [motor, output] = travel.map(moves);
+        let ends = [self.motor.position, self.output.position];
+        let travel = difference(ends, before.ends);
+        let [motor, output] = travel.map(motion_sign);
         let direction = if motor == 0 { output } else { motor };
-        if travel.iter().all(|by| by.saturating_abs() < JUDGE.min_block_travel) && self.table.counts.has_output {
+        if travel.iter().all(|by| by.saturating_abs() < JUDGE.min_block_travel) && table.counts.has_output {
             self.standstill = Some(ends);
         }
         let rise = core::mem::replace(&mut self.rise, T::ZERO);
@@ -263,30 +265,38 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
         let torque = (before.rise + (sum - rise)) * table.per_block;
         if motor != 0 && before.direction == 0 {
-            let against = usize::from((torque > T::ZERO) != (motor > 0));
-            if let Some(starts) = self.starts.get_mut(against).filter(|_| torque.abs() > T::ZERO) {
-                *starts = starts.saturating_add(1);
-            }
+            self.record_start(torque, motor);
         }
         // A motor that moves alone winds up or crosses the gap: the effect of torque on the joint is not visible.
         let alone = table.counts.has_output && (motor == 0 || output == 0);
-        if alone || direction == 0 || direction != before.direction {
-            return;
+        if !alone && direction != 0 && direction == before.direction {
+            self.add_response(torque, difference(travel, before.travel));
         }
-        let side = T::from_i32(direction);
-        let angles = [table.counts.motor.angle, table.counts.output.angle];
-        let [motor, output] = [0, 1].map(|shaft: usize| {
-            let [now, last] = [&travel, &before.travel].map(|of| of.get(shaft).copied().unwrap_or(0));
-            T::from_i64(now.saturating_sub(last))
-        });
+    }
+
+    /// Records a start of the motor, with or against the torque.
+    fn record_start(&mut self, torque: T, motor_sign: i32) {
+        let against = usize::from((torque > T::ZERO) != (motor_sign > 0));
+        if let Some(starts) = self.starts.get_mut(against).filter(|_| torque.abs() > T::ZERO) {
+            *starts = starts.saturating_add(1);
+        }
+    }
+
+    /// Adds the second difference of both positions [counts] under a torque to the lines of responses, and the present
+    /// angles to the line of angles.
+    fn add_response(&mut self, torque: T, second_difference: [i64; 2]) {
+        let counts = &self.table.counts;
+        let side = T::from_i32(self.block.direction);
+        let angles = [counts.motor.angle, counts.output.angle];
+        let [motor, output] = second_difference.map(T::from_i64);
         let response = [angles[0] * motor, angles[1] * output];
         self.responses.add(torque, side, response);
-        if same_sign_blocks >= JUDGE.same_sign_blocks {
+        if self.block.same_sign_blocks >= JUDGE.same_sign_blocks {
             self.one_sign_responses.add(torque, side, response);
         }
-        if table.counts.has_output {
-            let [motor, output] = ends;
-            let y = angles[0] * table.per_ratio * T::from_i64(motor);
+        if counts.has_output {
+            let [motor, output] = self.block.ends;
+            let y = angles[0] * self.table.per_ratio * T::from_i64(motor);
             self.angles.add(angles[1] * T::from_i64(output), side, [y, T::ZERO]);
         }
     }
@@ -407,49 +417,32 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
 
     /// Judges ratio, counts and places by the angle factor. Returns true if the angles agree with the tables.
     fn judge_factor(&self, wiring: &mut Wiring<T>, fit: &Fit<T>, tolerance: T, travels: [T; 2]) -> bool {
-        let [motor_travel, output_travel] = travels;
-        let travel_ratio = motor_travel / at_least_smallest(output_travel);
-        let table = self.table;
-        let counts = &table.counts;
-        let size = fit.slope.abs();
-        let is_sure = fit.sign() != 0 && tolerance < T::QUARTER;
-        let matches = |expected: T| is_sure && (size - expected).abs() <= tolerance * expected;
-        let [motor_turn, output_turn] = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
-        // With exchanged encoders, the motor's place reads output turns times output counts, and vice versa.
-        let exchange = (output_turn / at_least_smallest(motor_turn)) * table.per_ratio;
-        let exchanged = exchange * exchange;
-        let lags = fit.step < -T::EIGHTH * exchange * table.lost_motion && -fit.step > T::FOUR * fit.step_deviation;
-        let [by_motor, by_output] = self.leads;
-        let output_leads = by_output >= 2 && by_output > by_motor;
-        let resembles_exchange = factor_from_one(travel_ratio / at_least_smallest(exchanged)) < T::THREE;
         let bad = [WiringItem::MotorCounts, WiringItem::OutputCounts].map(|item| wiring.verdict(item).is_bad());
+        let factor =
+            AngleFactor { size: fit.slope.abs(), is_sure: fit.sign() != 0 && tolerance < T::QUARTER, tolerance };
         // The true travel may be half of the apparent one, and counts beyond their range can only mean wrong bits.
         let power_tolerance =
             if bad == [false; 2] && tolerance < T::EIGHTH { tolerance + tolerance } else { T::QUARTER };
-        let power_of_two = if is_sure { matching_power_of_two(size, power_tolerance) } else { None };
-        let blamed_motor = power_of_two.and_then(|power| self.blamed_encoder(power, fit.sign(), bad));
-        let least = if size < T::ONE { size } else { T::ONE };
-        let motor_leads_step =
-            fit.step > T::EIGHTH * least * table.lost_motion && fit.step > T::FOUR * fit.step_deviation;
-        let no_other = matches(exchanged) && !matches(T::ONE) && power_of_two.is_none() && by_output >= by_motor;
-        // Leads decide if bits do not explain the angles, explain them less well, or point to neither encoder.
-        let explains = power_of_two.is_some_and(|power| {
-            blamed_motor.is_some()
-                && factor_from_one(size / power) <= factor_from_one(size / at_least_smallest(exchanged))
-        });
-        if resembles_exchange && !motor_leads_step && (lags || (output_leads && !explains) || no_other) {
+        let power = if factor.is_sure { matching_power_of_two(factor.size, power_tolerance) } else { None };
+        let blamed_motor = power.and_then(|power| self.blamed_encoder(power, fit.sign(), bad));
+        let exchange = self.exchange();
+        let [motor_travel, output_travel] = travels;
+        let travel_ratio = motor_travel / at_least_smallest(output_travel);
+        let resembles_exchange = factor_from_one(travel_ratio / at_least_smallest(exchange * exchange)) < T::THREE;
+        let explained = power.filter(|_| blamed_motor.is_some());
+        if resembles_exchange && self.are_exchanged(fit, &factor, exchange, power, explained) {
             wiring.set(WiringItem::Places, WiringVerdict::Wrong(T::ZERO));
             // Counts of the other encoder are no evidence on an encoder's own range.
             wiring.set(WiringItem::MotorCounts, WiringVerdict::NotSeen);
             wiring.set(WiringItem::OutputCounts, WiringVerdict::NotSeen);
             return false;
         }
-        if !is_sure {
+        if !factor.is_sure {
             self.suspect_counts(wiring, travel_ratio, resembles_exchange, motor_travel, output_travel);
             return false;
         }
         wiring.set(WiringItem::Places, WiringVerdict::Right);
-        if matches(T::ONE) {
+        if factor.matches(T::ONE) {
             for item in [WiringItem::Ratio, WiringItem::MotorCounts, WiringItem::OutputCounts] {
                 if !wiring.verdict(item).is_bad() {
                     wiring.set(item, WiringVerdict::Right);
@@ -457,10 +450,52 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
             }
             return bad == [false; 2];
         }
-        let Some(power) = power_of_two else {
-            wiring.set(WiringItem::Ratio, WiringVerdict::Wrong(table.ratio * size));
+        match power {
+            Some(power) => self.judge_counts(wiring, power, blamed_motor),
+            None => wiring.set(WiringItem::Ratio, WiringVerdict::Wrong(self.table.ratio * factor.size)),
+        }
+        false
+    }
+
+    /// Reading of the motor over its angle with exchanged encoders [-]: the motor's place reads output turns times output
+    /// counts, and vice versa. The angle factor is then the square.
+    fn exchange(&self) -> T {
+        let counts = &self.table.counts;
+        let [motor_turn, output_turn] = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
+        (output_turn / at_least_smallest(motor_turn)) * self.table.per_ratio
+    }
+
+    /// Returns true if motor and output encoder are exchanged: the motor's place lags, the output's place leads, or no
+    /// other fault explains the angle factor. `explained` is the power of two that one encoder's bits explain.
+    fn are_exchanged(
+        &self,
+        fit: &Fit<T>,
+        factor: &AngleFactor<T>,
+        exchange: T,
+        power: Option<T>,
+        explained: Option<T>,
+    ) -> bool {
+        let (size, lost_motion) = (factor.size, self.table.lost_motion);
+        let exchanged = exchange * exchange;
+        let least = if size < T::ONE { size } else { T::ONE };
+        let motor_leads = fit.step > T::EIGHTH * least * lost_motion && fit.step > T::FOUR * fit.step_deviation;
+        if motor_leads {
             return false;
-        };
+        }
+        let motor_lags = fit.step < -T::EIGHTH * exchange * lost_motion && -fit.step > T::FOUR * fit.step_deviation;
+        let [by_motor, by_output] = self.leads;
+        let output_leads = by_output >= 2 && by_output > by_motor;
+        let no_other = factor.matches(exchanged) && !factor.matches(T::ONE) && power.is_none() && by_output >= by_motor;
+        // Leads decide if bits do not explain the angles, explain them less well, or point to neither encoder.
+        let bits_explain = explained
+            .is_some_and(|power| factor_from_one(size / power) <= factor_from_one(size / at_least_smallest(exchanged)));
+        motor_lags || (output_leads && !bits_explain) || no_other
+    }
+
+    /// Judges the counts per turn for an angle factor of a power of two.
+    fn judge_counts(&self, wiring: &mut Wiring<T>, power: T, blamed_motor: Option<bool>) {
+        let counts = &self.table.counts;
+        let [motor_turn, output_turn] = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
         let (of_motor, of_output) = (motor_turn * power, output_turn / power);
         let [motor, output] = match blamed_motor {
             Some(true) => [WiringVerdict::Wrong(of_motor), WiringVerdict::Right],
@@ -469,7 +504,6 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         };
         wiring.set(WiringItem::MotorCounts, motor);
         wiring.set(WiringItem::OutputCounts, output);
-        false
     }
 
     /// Judges travels that do not match at all and have no fitted line: counts are wrong, or encoders are exchanged.
@@ -589,6 +623,17 @@ fn judge_directions<T: Real>(wiring: &mut Wiring<T>, motor_sign: i32, output_sig
     wiring.set(motor, of_motor);
     wiring.set(output, if has_output { of_output } else { WiringVerdict::NotSeen });
     wiring.set(torque, of_torque);
+}
+
+/// Sign of a block's travel [counts]; 0 for a travel that noise explains.
+fn motion_sign(travel: i64) -> i32 {
+    if travel >= JUDGE.min_block_travel {
+        1
+    } else if travel <= -JUDGE.min_block_travel {
+        -1
+    } else {
+        0
+    }
 }
 
 /// Limits a number to positive values for division.

@@ -62,6 +62,11 @@ impl Track {
     }
 }
 
+/// Difference of both shafts' counts.
+pub fn difference([motor, output]: [i64; 2], [motor_before, output_before]: [i64; 2]) -> [i64; 2] {
+    [motor.saturating_sub(motor_before), output.saturating_sub(output_before)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

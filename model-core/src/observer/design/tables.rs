@@ -7,6 +7,7 @@
 use core::f64::consts::TAU;
 
 use super::body::Body;
+use super::filter::Filter;
 use super::settings::{EncoderSettings, ObserverSettings};
 use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
 use super::thresholds::{
@@ -33,109 +34,164 @@ pub fn design_observer<T: Real>(
     validate(joint)?;
     let body = Body::new(joint);
     settings.check(body.gap_at_motor())?;
-    let real = T::from_f64;
     let step = 1.0 / f64::from(settings.control_rate);
     let counts = counts::<T>(joint, settings, step)?;
-    let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
-    let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
-    let drive =
-        drive_filter(&body, settings, rounding(motor_count, body.ratio * ROUNDING_DESIGN.motor_speed, step), step);
-    let load = load_filter(&body, settings, rounding(output_count, ROUNDING_DESIGN.link_speed, step), step);
-
-    let largest_force = settings.torque_limit / body.sun_lever;
-    let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
-    let periods = libm::round(LEARNING_DESIGN.interval / step).max(1.0);
-    let deflection_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
-    let ripple = settings.torque_ripple / body.sun_lever;
-    let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
-    let motor_only = load_filter(
-        &body,
-        settings,
-        (deflection_variance + body.compliance.powi(2) * (force_variance + ripple * ripple))
-            / body.output_lever.powi(2),
-        step,
-    );
-    let unmodelled = CONTACT_DESIGN.unmodelled_errors * settings.motor_encoder.harmonic_error * body.sun_lever;
-    let noise = libm::sqrt(deflection_variance + wind_up_variance + unmodelled * unmodelled);
-    let block = libm::round(LEARNING_DESIGN.batch / LEARNING_DESIGN.interval).max(1.0);
-
-    let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
-    let stops = |stop: f64, forgotten: f64| StopTable {
-        stop: stop as u8,
-        forgotten: forgotten as u8,
-        per_stops: real(0.5 / stop),
-    };
-    let brake = |torque: f64, inertia: f64, count: f64| 0.5 * torque / inertia * step * step / count;
-    let half_gap = 2.0 * body.half_backlash;
-    let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
-        encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
-    };
-    let motor_harmonic = harmonics(Some(settings.motor_encoder), body.sun_lever);
-    let output_harmonic = harmonics(settings.output_encoder, body.output_lever);
-    let mut deviation = [0.0; MOST_PARAMETERS];
-    deviation[0] = half_gap * settings.backlash_uncertainty;
-    deviation[1] = 2.0 * half_gap + body.compliance * largest_force;
-    deviation[2] = body.compliance * settings.compliance_uncertainty;
-    deviation[3] = body.output_lever * settings.skew_uncertainty;
-    deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
-    deviation[6..10].fill(motor_harmonic);
-    deviation[10..14].fill(output_harmonic);
-    let mut mean = [0.0; MOST_PARAMETERS];
-    mean[0] = half_gap;
-    mean[2] = body.compliance;
-    mean[3] = body.output_lever * settings.skew;
-
-    let meshes = f64::from(joint.geometry.ring_teeth);
-    let tables = ObserverTables {
-        identity: mean
-            .iter()
-            .chain(&deviation)
-            .fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
+    let design = Design::new(joint, settings, body, step);
+    let Design { body, drive, load, periods, .. } = &design;
+    let prior = design.prior();
+    let numbers = prior.mean.iter().chain(&prior.deviation);
+    Ok(ObserverTables {
+        identity: numbers.fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
         control_rate: settings.control_rate,
-        period: real(step),
+        period: T::from_f64(step),
         clock: clock(step, settings.clock_rate),
         counts,
-        levers: LeverTable {
-            sun: real(body.sun_lever),
-            per_sun: real(1.0 / body.sun_lever),
-            output: real(body.output_lever),
-            per_output: real(1.0 / body.output_lever),
-            ratio: real(body.ratio),
-            per_ratio: real(1.0 / body.ratio),
-        },
+        levers: levers(body),
         current: current(settings, step),
-        drive: drive_table(&body, settings, &drive, step),
-        load: LoadTable {
-            angle: [real(step), real(load.response[(0, 0)])],
+        drive: drive_table(body, settings, drive, step),
+        load: design.load_table(),
+        inertia: inertia::table(load, settings, body, *periods as u32, step),
+        cogging: cogging::table(load, settings, body, [periods * step, drive_lag(body, drive, step)], step),
+        contact: design.contact_table(),
+        learner: design.learner_table(&prior),
+        supervisor: design.supervisor_table(),
+        response: response(body, settings, design.motor_count, step),
+    })
+}
+
+/// Filters of a joint, and the noise that they leave.
+struct Design<'a> {
+    joint: &'a JointParameters,
+    settings: &'a ObserverSettings,
+    body: Body,
+    /// Control period [s].
+    step: f64,
+    /// Angles of a count of motor and output [rad].
+    motor_count: f64,
+    output_count: f64,
+    drive: Filter,
+    load: Filter,
+    /// Control periods of a learning interval, and learning intervals of a batch.
+    periods: f64,
+    batch: f64,
+    /// Torque ripple as mesh force [N].
+    ripple: f64,
+    /// Noise variances of mesh force [N^2], deflection, and mean deflection by the force's wind-up [m^2].
+    force_variance: f64,
+    deflection_variance: f64,
+    wind_up_variance: f64,
+    /// Deviations of the harmonics of the encoders' errors [m].
+    motor_harmonic: f64,
+    output_harmonic: f64,
+}
+
+/// Prior of the estimated parameters.
+struct Prior {
+    mean: [f64; MOST_PARAMETERS],
+    deviation: [f64; MOST_PARAMETERS],
+}
+
+impl<'a> Design<'a> {
+    fn new(joint: &'a JointParameters, settings: &'a ObserverSettings, body: Body, step: f64) -> Self {
+        let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
+        let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
+        let motor_speed = body.ratio * ROUNDING_DESIGN.motor_speed;
+        let drive = drive_filter(&body, settings, rounding(motor_count, motor_speed, step), step);
+        let load = load_filter(&body, settings, rounding(output_count, ROUNDING_DESIGN.link_speed, step), step);
+        let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
+        let periods = libm::round(LEARNING_DESIGN.interval / step).max(1.0);
+        let ripple = settings.torque_ripple / body.sun_lever;
+        let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
+            encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
+        };
+        Self {
+            joint,
+            settings,
+            step,
+            motor_count,
+            output_count,
+            periods,
+            batch: libm::round(LEARNING_DESIGN.batch / LEARNING_DESIGN.interval).max(1.0),
+            ripple,
+            force_variance,
+            deflection_variance: drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2),
+            wind_up_variance: body.compliance.powi(2) * (force_variance / periods + ripple * ripple),
+            motor_harmonic: harmonics(Some(settings.motor_encoder), body.sun_lever),
+            output_harmonic: harmonics(settings.output_encoder, body.output_lever),
+            body,
+            drive,
+            load,
+        }
+    }
+
+    /// Largest mesh force of the motor [N].
+    fn largest_force(&self) -> f64 {
+        self.settings.torque_limit / self.body.sun_lever
+    }
+
+    /// Half-gap as designed [m].
+    fn half_gap(&self) -> f64 {
+        2.0 * self.body.half_backlash
+    }
+
+    fn prior(&self) -> Prior {
+        let Self { settings, body, .. } = self;
+        let mut deviation = [0.0; MOST_PARAMETERS];
+        deviation[0] = self.half_gap() * settings.backlash_uncertainty;
+        deviation[1] = 2.0 * self.half_gap() + body.compliance * self.largest_force();
+        deviation[2] = body.compliance * settings.compliance_uncertainty;
+        deviation[3] = body.output_lever * settings.skew_uncertainty;
+        deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
+        deviation[6..10].fill(self.motor_harmonic);
+        deviation[10..14].fill(self.output_harmonic);
+        let mut mean = [0.0; MOST_PARAMETERS];
+        mean[0] = self.half_gap();
+        mean[2] = body.compliance;
+        mean[3] = body.output_lever * settings.skew;
+        Prior { mean, deviation }
+    }
+
+    fn load_table<T: Real>(&self) -> LoadTable<T> {
+        let Self { body, load, force_variance, ripple, .. } = self;
+        let real = T::from_f64;
+        // Without an output encoder, the wind-up of the mesh force measures the link.
+        let measurement_noise = (self.deflection_variance
+            + body.compliance.powi(2) * (force_variance + ripple * ripple))
+            / body.output_lever.powi(2);
+        let motor_only = load_filter(body, self.settings, measurement_noise, self.step);
+        LoadTable {
+            angle: [real(self.step), real(load.response[(0, 0)])],
             speed: real(load.response[(1, 0)]),
             gain: [0, 1, 2].map(|state| real(load.gain[state])),
             variance: [real(load.variance[0]), real(load.variance[2])],
             motor_only_gain: [0, 1, 2].map(|state| real(motor_only.gain[state])),
             motor_only_variance: [real(motor_only.variance[1]), real(motor_only.variance[2])],
             deflection_per_torque: real(0.5 * body.output_lever / body.load_inertia),
-        },
-        inertia: inertia::table(&load, settings, &body, periods as u32, step),
-        cogging: cogging::table(&load, settings, &body, [periods * step, drive_lag(&body, &drive, step)], step),
-        contact: ContactTable {
-            force_variance: real(force_variance),
+        }
+    }
+
+    fn contact_table<T: Real>(&self) -> ContactTable<T> {
+        let Self { settings, body, drive, load, step, force_variance, deflection_variance, ripple, .. } = self;
+        let real = T::from_f64;
+        let sigma = CONTACT_DESIGN.noise_sigma;
+        let bias_prior = (settings.torque_uncertainty / body.sun_lever).powi(2);
+        let meshes = f64::from(self.joint.geometry.ring_teeth);
+        ContactTable {
+            force_variance: real(*force_variance),
             ripple_variance: real(ripple * ripple),
-            deflection_variance: real(deflection_variance),
+            deflection_variance: real(*deflection_variance),
             bias_noise: real((force_variance + ripple * ripple) * BIAS_DESIGN.correlated_intervals),
-            bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
-            bias_drift: real(
-                (settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_DESIGN.interval
-                    / BIAS_DESIGN.drift_time,
-            ),
-            bias_limit: real(CONTACT_DESIGN.noise_sigma * settings.torque_uncertainty / body.sun_lever),
+            bias_prior: real(bias_prior),
+            bias_drift: real(bias_prior * LEARNING_DESIGN.interval / BIAS_DESIGN.drift_time),
+            bias_limit: real(sigma * settings.torque_uncertainty / body.sun_lever),
             still: real(
-                CONTACT_DESIGN.noise_sigma * libm::sqrt(2.0 * (deflection_variance + wind_up_variance))
-                    / LEARNING_DESIGN.window,
+                sigma * libm::sqrt(2.0 * (deflection_variance + self.wind_up_variance)) / LEARNING_DESIGN.window,
             ),
             still_per_speed: real(
-                2.0 * (HARMONIC_SLOPE * motor_harmonic
-                    + (output_harmonic + meshes * body.transmission_error) / body.ratio),
+                2.0 * (HARMONIC_SLOPE * self.motor_harmonic
+                    + (self.output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),
-            per_turning: real(1.0 / (CONTACT_DESIGN.noise_sigma * libm::sqrt(drive.quiet[1]))),
+            per_turning: real(1.0 / (sigma * libm::sqrt(drive.quiet[1]))),
             rate_deviation: real(libm::sqrt(
                 drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
             )),
@@ -144,54 +200,79 @@ pub fn design_observer<T: Real>(
             known_part: real(CONTACT_DESIGN.known_half_gap),
             loss_driving: real(settings.efficiency - 1.0),
             loss_driven: real(1.0 / settings.efficiency - 1.0),
-        },
-        learner: LearnerTable {
-            periods: periods as u16,
+        }
+    }
+
+    fn learner_table<T: Real>(&self, prior: &Prior) -> LearnerTable<T> {
+        let Self { settings, body, step, periods, batch, ripple, .. } = self;
+        let real = T::from_f64;
+        let unmodelled = CONTACT_DESIGN.unmodelled_errors * settings.motor_encoder.harmonic_error * body.sun_lever;
+        let noise = libm::sqrt(self.deflection_variance + self.wind_up_variance + unmodelled * unmodelled);
+        LearnerTable {
+            periods: *periods as u16,
             per_periods: real(1.0 / periods),
-            middle: periods as u16 / 2 + 1,
-            block: block as u32,
-            per_block: real(1.0 / block),
+            middle: *periods as u16 / 2 + 1,
+            block: *batch as u32,
+            per_block: real(1.0 / batch),
             span: real(periods * step),
-            mean: mean.map(real),
-            deviation: deviation.map(real),
+            mean: prior.mean.map(real),
+            deviation: prior.deviation.map(real),
             weight: real(1.0 / noise),
             noise: real(noise),
-            force_noise: real(force_variance / (periods * block) + 0.5 * ripple * ripple),
-            force_lag: real(drive_lag(&body, &drive, step) / (periods * step)),
+            force_noise: real(self.force_variance / (periods * batch) + 0.5 * ripple * ripple),
+            force_lag: real(drive_lag(body, &self.drive, *step) / (periods * step)),
             forgetting: real(LEARNING_DESIGN.interval / LEARNING_DESIGN.memory),
             mesh_compliance: real(body.mesh_compliance),
-        },
-        supervisor: SupervisorTable {
-            silent_after: (SUPERVISION_DESIGN.output_silence / step) as u16,
-            failed_after: (SUPERVISION_DESIGN.output_fault_time / step) as u16,
-            output: stops(stop(SUPERVISION_DESIGN.link_stop_time), stop(SUPERVISION_DESIGN.link_stop_time)),
-            // Teeth stop the motor like a spring, in at least a quarter of a swing.
-            motor: stops(
-                libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0),
-                stop(SUPERVISION_DESIGN.motor_speed_kept),
-            ),
-            output_brake: real(brake(
-                SUPERVISION_DESIGN.link_brake * settings.torque_limit * body.ratio,
-                body.load_inertia,
-                output_count,
-            )),
-            motor_brake: real(brake(1.0, body.motor_inertia, motor_count)),
+        }
+    }
+
+    fn supervisor_table<T: Real>(&self) -> SupervisorTable<T> {
+        let Self { settings, body, step, motor_count, output_count, .. } = self;
+        let real = T::from_f64;
+        let limits = SUPERVISION_DESIGN;
+        let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
+        let stops = |stop: f64, forgotten: f64| StopTable {
+            stop: stop as u8,
+            forgotten: forgotten as u8,
+            per_stops: real(0.5 / stop),
+        };
+        let brake = |torque: f64, inertia: f64, count: f64| 0.5 * torque / inertia * step * step / count;
+        let link_brake = limits.link_brake * settings.torque_limit * body.ratio;
+        // Teeth stop the motor like a spring, in at least a quarter of a swing.
+        let motor_stop = libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0);
+        SupervisorTable {
+            silent_after: (limits.output_silence / step) as u16,
+            failed_after: (limits.output_fault_time / step) as u16,
+            output: stops(stop(limits.link_stop_time), stop(limits.link_stop_time)),
+            motor: stops(motor_stop, stop(limits.motor_speed_kept)),
+            output_brake: real(brake(link_brake, body.load_inertia, *output_count)),
+            motor_brake: real(brake(1.0, body.motor_inertia, *motor_count)),
             motor_drag: real(CONTACT_DESIGN.noise_sigma * settings.torque_uncertainty),
             motor_counts: real(body.ratio * output_count / motor_count),
-            motor_unmoved_after: (SUPERVISION_DESIGN.motor_standstill / step) as u16,
-            motor_trusted_after: (SUPERVISION_DESIGN.motor_readmission / step) as u16,
-            motor_slipped_after: (SUPERVISION_DESIGN.motor_slip_readmission / step) as u16,
-            trusted_after: (SUPERVISION_DESIGN.output_readmission / LEARNING_DESIGN.interval) as u16,
-            moved: libm::ldexp(SUPERVISION_DESIGN.min_motion * output_count / TAU, 32) as u32,
+            motor_unmoved_after: (limits.motor_standstill / step) as u16,
+            motor_trusted_after: (limits.motor_readmission / step) as u16,
+            motor_slipped_after: (limits.motor_slip_readmission / step) as u16,
+            trusted_after: (limits.output_readmission / LEARNING_DESIGN.interval) as u16,
+            moved: libm::ldexp(limits.min_motion * output_count / TAU, 32) as u32,
             margin: real(
-                SUPERVISION_DESIGN.deflection_margin * half_gap
-                    + SUPERVISION_DESIGN.deflection_margin * body.compliance * largest_force,
+                limits.deflection_margin * self.half_gap()
+                    + limits.deflection_margin * body.compliance * self.largest_force(),
             ),
-            widest_part: real(SUPERVISION_DESIGN.widest_gap),
-        },
-        response: response(&body, settings, motor_count, step),
-    };
-    Ok(tables)
+            widest_part: real(limits.widest_gap),
+        }
+    }
+}
+
+fn levers<T: Real>(body: &Body) -> LeverTable<T> {
+    let real = T::from_f64;
+    LeverTable {
+        sun: real(body.sun_lever),
+        per_sun: real(1.0 / body.sun_lever),
+        output: real(body.output_lever),
+        per_output: real(1.0 / body.output_lever),
+        ratio: real(body.ratio),
+        per_ratio: real(1.0 / body.ratio),
+    }
 }
 
 /// Variance R of a reading's rounding (O5), for a count [rad] and a shaft speed [rad/s]: grows with the periods per

@@ -78,33 +78,44 @@ impl<T: Real> LinkInertia<T> {
     /// Updates the mobility once per interval with the link's response.
     pub fn update(&mut self, table: &InertiaTable<T>, load: &mut LoadSide<T>, is_usable: bool) {
         let torque = core::mem::replace(&mut self.sum, T::ZERO) * table.per_periods;
-        let before =
-            [self.stationary_response.angle_residual, self.stationary_response.speed, self.stationary_response.torque];
-        let row = |row: &[T; 4]| {
-            let [angle, speed, torque_row, given] = *row;
-            angle * before[0] + speed * before[1] + torque_row * before[2] + given * torque
-        };
-        let [angle, speed, torque_row] = &table.still;
-        self.stationary_response = LoadSide { angle_residual: row(angle), speed: row(speed), torque: row(torque_row) };
-        let [given, answered] = &mut self.slow;
-        let force = high_pass(given, table.slow, self.stationary_response.torque);
-        let answer = high_pass(answered, table.slow, self.mobility * self.stationary_response.torque - load.torque);
-        let one_way = if !is_usable {
+        self.advance_stationary_response(table, torque);
+        let [of_force, of_answer] = &mut self.slow;
+        let force = high_pass(of_force, table.slow, self.stationary_response.torque);
+        let answer = high_pass(of_answer, table.slow, self.mobility * self.stationary_response.torque - load.torque);
+        self.count_one_way_motion(table, load.speed, is_usable);
+        if self.variance < table.prior {
+            self.variance += table.drift;
+        }
+        if self.one_way_intervals.unsigned_abs() >= table.settled_after {
+            self.correct(table, load, force, answer);
+        }
+    }
+
+    /// Advances the response of the load filter to a mesh torque [N m] on a stationary link by an interval.
+    fn advance_stationary_response(&mut self, table: &InertiaTable<T>, mesh_torque: T) {
+        let LoadSide { angle_residual, speed, torque } = self.stationary_response;
+        let [angle_row, speed_row, torque_row] = table.still.map(|[of_angle, of_speed, of_torque, of_mesh]| {
+            of_angle * angle_residual + of_speed * speed + of_torque * torque + of_mesh * mesh_torque
+        });
+        self.stationary_response = LoadSide { angle_residual: angle_row, speed: speed_row, torque: torque_row };
+    }
+
+    /// Counts the intervals of motion in one direction.
+    fn count_one_way_motion(&mut self, table: &InertiaTable<T>, speed: T, is_usable: bool) {
+        self.one_way_intervals = if !is_usable {
             0
-        } else if load.speed > table.moving && self.one_way_intervals >= 0 {
+        } else if speed > table.moving && self.one_way_intervals >= 0 {
             self.one_way_intervals.saturating_add(1)
-        } else if -load.speed > table.moving && self.one_way_intervals <= 0 {
+        } else if -speed > table.moving && self.one_way_intervals <= 0 {
             self.one_way_intervals.saturating_sub(1)
         } else {
             0
         };
-        self.one_way_intervals = one_way;
-        if self.variance < table.prior {
-            self.variance += table.drift;
-        }
-        if self.one_way_intervals.unsigned_abs() < table.settled_after {
-            return;
-        }
+    }
+
+    /// Corrects the mobility, and the load side in retrospect, with the link's answer to a force, both as fast torques
+    /// [N m].
+    fn correct(&mut self, table: &InertiaTable<T>, load: &mut LoadSide<T>, force: T, answer: T) {
         let innovation = answer - self.mobility * force;
         // If external forces push the link repeatedly, mesh forces respond to the link instead of the link to mesh
         // forces.

@@ -94,6 +94,16 @@ pub struct IntervalResult<T: Real> {
     error_deviation: T,
 }
 
+/// Effect of unknown error maps and transmission error on the travel of the deflection.
+struct Blur<T: Real> {
+    /// Standard deviation of the transmission error while the half-gap is unknown; 0 afterwards [m].
+    error_deviation: T,
+    /// Change of the deflection that is no motion of the teeth, per radian of the motor [m/rad].
+    per_turn: T,
+    /// Transmission error to subtract [m].
+    known_shift: T,
+}
+
 impl<T: Real> IntervalResult<T> {
     /// Mean mesh force [N].
     pub fn force(&self) -> T {
@@ -318,37 +328,42 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         let deflection = mean.raw_deflection - self.least_squares.deflection(&self.errors.open_gap);
         let [_, compliance] = self.half_gap_and_compliance();
         let motor_turn = motor_speed.abs() * tables.learner.span;
-        // Until the half-gap is known, the estimated transmission error is subtracted, so that it hides no crossing;
-        // afterwards it is left in.
-        let (error_deviation, blur, known_shift) = if self.uncertainty.half_gap_is_known {
-            (T::ZERO, tables.contact.still_per_speed * Self::LIMITS.remaining_blur, T::ZERO)
-        } else {
-            let (error_deviation, reduction) = self.least_squares.error_deviation(&tables.learner);
-            let per_turned = T::TWO * tables.counts.mesh_periods * tables.levers.per_ratio;
-            let blur = tables.contact.still_per_speed - per_turned * reduction;
-            (error_deviation, blur, self.transmission_error(&mesh))
-        };
+        let Blur { error_deviation, per_turn, known_shift } = self.blur(tables, &mesh);
         let less_wind_up = deflection - compliance * mean.force - known_shift;
         let motor_sample = (mean.motor_force, mean.direction);
-        let travel = self.travel.step(
-            &tables.contact,
-            less_wind_up,
-            motor_sample,
-            blur * motor_turn,
-            self.uncertainty.compliance_uncertainty,
-        );
-        self.interval.steady_force += (mean.force - self.interval.steady_force) * Self::LIMITS.steady_gain;
-        let averaged_intervals = if let Travel::AtRest(intervals) = travel {
-            i32::from(intervals.min(Self::LIMITS.averaged_dwell))
-        } else {
-            1
-        };
-        self.interval.dwell_force += (mean.force - self.interval.dwell_force) / T::from_i32(averaged_intervals);
+        let blur = per_turn * motor_turn;
+        let compliance_uncertainty = self.uncertainty.compliance_uncertainty;
+        let travel = self.travel.step(&tables.contact, less_wind_up, motor_sample, blur, compliance_uncertainty);
+        self.average_force(mean.force, travel);
         let flank_shift = self.transmission_error(&mesh);
         let evidence = self.flank_evidence(deflection - flank_shift, mean.force);
         let flank =
             if is_settled(travel) { flank::settled_flank(&evidence, &self.interval, both_encoders) } else { None };
         IntervalResult { mean, mesh, deflection, flank_shift, travel, flank, error_deviation }
+    }
+
+    /// Effect of unknown error maps and transmission error on the travel of the deflection. Until the half-gap is known,
+    /// the estimated transmission error is subtracted, so that it hides no crossing; afterwards it is left in.
+    fn blur(&self, tables: &ObserverTables<T>, mesh: &[T; 2]) -> Blur<T> {
+        let per_turn = tables.contact.still_per_speed;
+        if self.uncertainty.half_gap_is_known {
+            let per_turn = per_turn * Self::LIMITS.remaining_blur;
+            return Blur { error_deviation: T::ZERO, per_turn, known_shift: T::ZERO };
+        }
+        let (error_deviation, reduction) = self.least_squares.error_deviation(&tables.learner);
+        let mesh_turn = T::TWO * tables.counts.mesh_periods * tables.levers.per_ratio;
+        let known_shift = self.transmission_error(mesh);
+        Blur { error_deviation, per_turn: per_turn - mesh_turn * reduction, known_shift }
+    }
+
+    /// Updates the mean mesh force over a few intervals and over the whole dwell.
+    fn average_force(&mut self, force: T, travel: Travel<T>) {
+        let intervals = match travel {
+            Travel::AtRest(intervals) => i32::from(intervals.min(Self::LIMITS.averaged_dwell)),
+            Travel::Crossing(..) | Travel::Undecided => 1,
+        };
+        self.interval.steady_force += (force - self.interval.steady_force) * Self::LIMITS.steady_gain;
+        self.interval.dwell_force += (force - self.interval.dwell_force) / T::from_i32(intervals);
     }
 
     /// Evidence of an interval on the flank: a deflection of the teeth [m] and a force [N].

@@ -99,7 +99,7 @@ pub enum ProbeProgress<T: Real> {
 #[derive(Debug, Clone)]
 pub struct Probe<'tables, T: Real> {
     table: &'tables ProbeTable<T>,
-    begin: Option<Shaft<T>>,
+    start: Option<Shaft<T>>,
     rest: usize,
     /// Periods of this rest, then periods without motion.
     periods: u32,
@@ -119,7 +119,7 @@ impl<'tables, T: Real> Probe<'tables, T> {
     pub fn new(table: &'tables ProbeTable<T>) -> Self {
         Self {
             table,
-            begin: None,
+            start: None,
             rest: 0,
             periods: 0,
             still: 0,
@@ -140,22 +140,22 @@ impl<'tables, T: Real> Probe<'tables, T> {
         if self.progress != ProbeProgress::Running {
             return (T::ZERO, self.progress);
         }
-        let wanted = RESTS.get(self.rest).map_or(T::ZERO, |(side, part)| self.table.torque * T::from_i32(side * part));
-        self.torque += (wanted - self.torque) * self.table.rise;
+        let target = RESTS.get(self.rest).map_or(T::ZERO, |(side, part)| self.table.torque * T::from_i32(side * part));
+        self.torque += (target - self.torque) * self.table.rise;
         (self.torque - self.table.damping * estimates.motor.speed, self.progress)
     }
 
     fn advance(&mut self, estimates: &Estimates<T>) -> ProbeProgress<T> {
         let table = self.table;
         let notices = estimates.notices;
-        let bad = notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped;
+        let is_bad = notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped;
         let reversed = estimates.torque_response == TorqueResponse::Reversed;
-        if bad || reversed || !estimates.source.allows_control() {
+        if is_bad || reversed || !estimates.source.allows_control() {
             return ProbeProgress::Refused(ProbeRefusal::BadSamples);
         }
         let speed = estimates.motor.speed.abs();
-        let Some(begin) = self.begin else {
-            self.begin = Some(estimates.motor);
+        let Some(start) = self.start else {
+            self.start = Some(estimates.motor);
             if speed > table.moving {
                 return ProbeProgress::Refused(ProbeRefusal::NotAtRest);
             }
@@ -164,8 +164,8 @@ impl<'tables, T: Real> Probe<'tables, T> {
             }
             return ProbeProgress::Running;
         };
-        let turns = T::from_i32(estimates.motor.turns.wrapping_sub(begin.turns));
-        let angle = (turns + (estimates.motor.fraction - begin.fraction)) * table.turn;
+        let turns = T::from_i32(estimates.motor.turns.wrapping_sub(start.turns));
+        let angle = (turns + (estimates.motor.fraction - start.fraction)) * table.turn;
         self.total += 1;
         if angle.abs() > table.furthest || self.total > table.longest {
             return ProbeProgress::Refused(ProbeRefusal::NotHeld);
@@ -196,18 +196,18 @@ impl<'tables, T: Real> Probe<'tables, T> {
         let [first, second, third, fourth, fifth, sixth] = self.angles;
         let flank = |single: T, double: T| single + single - double;
         let (drive, back, again) = (flank(first, second), flank(third, fourth), flank(fifth, sixth));
-        let between = (T::HALF * (drive + again) - back) * table.deflection;
-        if between < table.least {
+        let width = (T::HALF * (drive + again) - back) * table.deflection;
+        if width < table.least {
             return ProbeProgress::Refused(ProbeRefusal::Stuck);
         }
-        let apart = (again - drive) * table.deflection;
-        if apart.abs() > Self::LIMITS.max_disagreement * between {
+        let disagreement = (again - drive) * table.deflection;
+        if disagreement.abs() > Self::LIMITS.max_disagreement * width {
             return ProbeProgress::Refused(ProbeRefusal::Unsteady);
         }
         let quarter = T::HALF * T::HALF;
         // Friction may have held either rest off its position; the difference of the two passes is added to the
         // variance.
-        let variance = (table.variance + apart * apart) * quarter * quarter;
-        ProbeProgress::Done(Estimate { value: between * quarter, variance, valid: true })
+        let variance = (table.variance + disagreement * disagreement) * quarter * quarter;
+        ProbeProgress::Done(Estimate { value: width * quarter, variance, valid: true })
     }
 }

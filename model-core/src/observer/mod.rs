@@ -331,7 +331,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         &self.estimates
     }
 
-    /// Continues without the output encoder, which was excluded in this period. The link keeps its last motion, if known.
+    /// Continues without the output encoder, which was excluded in this period. The link keeps its last motion, if
+    /// known.
     #[cold]
     fn continue_without_output(&mut self, last: Option<LastMotion<T>>) {
         let tables = self.tables;

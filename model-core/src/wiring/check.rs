@@ -112,8 +112,8 @@ pub struct WiringCheck<'tables, T: Real> {
     /// Positions at the beginning of the leg or rest, and of the window.
     start: [i64; 2],
     window_start: [i64; 2],
-    /// `watches_output`: braking watches the output, otherwise the motor. `motion_sign`: direction of the braked motion.
-    /// `window_travel`: counts of the watched shaft in the last window of the push.
+    /// `watches_output`: braking watches the output, otherwise the motor. `motion_sign`: direction of the braked
+    /// motion. `window_travel`: counts of the watched shaft in the last window of the push.
     watches_output: bool,
     motion_sign: i64,
     window_travel: i64,
@@ -157,13 +157,13 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         if self.is_running() && self.total > self.table.longest {
             self.state = State::Refused(WiringRefusal::TooLong);
         }
-        let least = |one: T, other: T| if one < other { one } else { other };
+        let smaller = |one: T, other: T| if one < other { one } else { other };
         // The comparison also turns NaN into zero.
-        let allowed = if allowed > T::ZERO { least(allowed, self.table.torque_limit) } else { T::ZERO };
+        let allowed = if allowed > T::ZERO { smaller(allowed, self.table.torque_limit) } else { T::ZERO };
         if is_new && self.is_running() {
             self.advance(allowed);
         }
-        self.torque_magnitude = least(self.torque_magnitude, allowed);
+        self.torque_magnitude = smaller(self.torque_magnitude, allowed);
         let progress = match self.state {
             State::Done => WiringProgress::Done(self.judge.wiring()),
             State::Refused(refusal) => WiringProgress::Refused(refusal),
@@ -223,9 +223,9 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
         let travel = difference(positions, self.start);
         let is_creeping = |shaft: usize| {
-            let most =
+            let max_creep =
                 CHECK.rest_flicker.saturating_add(i64::from(of_shaft(self.table.leg, shaft) >> CHECK.creep_shift));
-            of_shaft(travel, shaft).saturating_abs() > most
+            of_shaft(travel, shaft).saturating_abs() > max_creep
         };
         let watched = usize::from(self.watches_output);
         if self.leg == 0 && self.motion_sign == 0 {

@@ -5,11 +5,11 @@
 //!
 //! `x = WIRING_DESIGN.travel (l/2 + e)` (1)
 //!
-//! so that the ratio is measured within `1/WIRING_DESIGN.travel`. The torque rises by `U/WIRING_DESIGN.rise` per second up to the allowed torque;
-//! `U` is a fifth of the motor's limit. A joint with the inertia `J` at the motor breaks away at the time 0. At the
-//! time `t` its acceleration is `a = (U/WIRING_DESIGN.rise) t/J`, its speed `a t/2` and its travel `a t^2/6`. The opposite torque
-//! stops the motor after a further travel of `a t^2/8`, three quarters of the travel before. Braking from half of `x`
-//! therefore ends before `x`, with or without friction.
+//! so that the ratio is measured within `1/WIRING_DESIGN.travel`. The torque rises by `U/WIRING_DESIGN.rise` per second
+//! up to the allowed torque; `U` is a fifth of the motor's limit. A joint with the inertia `J` at the motor breaks away
+//! at the time 0. At the time `t` its acceleration is `a = (U/WIRING_DESIGN.rise) t/J`, its speed `a t/2` and its
+//! travel `a t^2/6`. The opposite torque stops the motor after a further travel of `a t^2/8`, three quarters of the
+//! travel before. Braking from half of `x` therefore ends before `x`, with or without friction.
 
 use crate::gears::design::DesignError;
 use crate::numbers::Real;

@@ -45,7 +45,8 @@ struct BlockState<T: Real> {
     /// Torque, weighted from 0 at the beginning to 1 at the end of the block, times its periods [N m].
     rise: T,
     direction: i32,
-    /// `sign`: sign of the torque if constant over the block, otherwise 0. `same_sign_blocks`: consecutive blocks with this sign.
+    /// `sign`: sign of the torque if constant over the block, otherwise 0. `same_sign_blocks`: consecutive blocks with
+    /// this sign.
     sign: i32,
     same_sign_blocks: u8,
 }
@@ -334,12 +335,12 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         // As in the check, wrong counts per turn overstate or understate a travel.
         let travel = (motor_travel * output_travel).square_root();
         let tolerance = table.ratio_tolerance + table.slack / at_least_smallest(travel);
-        let fits = motor_moved && output_moved && has_output && {
+        let angles_agree = motor_moved && output_moved && has_output && {
             let fit = fit.unwrap_or_default();
             let tolerance = tolerance + T::FOUR * (fit.deviation / at_least_smallest(fit.slope.abs()));
             self.judge_factor(&mut wiring, &fit, tolerance, [motor_travel, output_travel])
         };
-        if fits || !has_output {
+        if angles_agree || !has_output {
             self.judge_torque(&mut wiring, output_sign);
         }
         wiring
@@ -395,8 +396,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
     }
 
-    /// Direction of the motor under a positive torque; 0 if unknown. `output_sign` is the direction of the output relative to
-    /// the motor.
+    /// Direction of the motor under a positive torque; 0 if unknown. `output_sign` is the direction of the output
+    /// relative to the motor.
     fn drive_sign(&self, output_sign: i32) -> i32 {
         let [motor, output] = [[T::ONE, T::ZERO], [T::ZERO, T::ONE]].map(|weights| self.responses.fit(weights));
         // The output's response is more regular: the motor also crosses the gap.
@@ -457,8 +458,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         false
     }
 
-    /// Reading of the motor over its angle with exchanged encoders [-]: the motor's place reads output turns times output
-    /// counts, and vice versa. The angle factor is then the square.
+    /// Reading of the motor over its angle with exchanged encoders [-]: the motor's place reads output turns times
+    /// output counts, and vice versa. The angle factor is then the square.
     fn exchange(&self) -> T {
         let counts = &self.table.counts;
         let [motor_turn, output_turn] = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
@@ -477,8 +478,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
     ) -> bool {
         let (size, lost_motion) = (factor.size, self.table.lost_motion);
         let exchanged = exchange * exchange;
-        let least = if size < T::ONE { size } else { T::ONE };
-        let motor_leads = fit.step > T::EIGHTH * least * lost_motion && fit.step > T::FOUR * fit.step_deviation;
+        let smaller = if size < T::ONE { size } else { T::ONE };
+        let motor_leads = fit.step > T::EIGHTH * smaller * lost_motion && fit.step > T::FOUR * fit.step_deviation;
         if motor_leads {
             return false;
         }
@@ -544,8 +545,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
             output_sign,
         )?);
         let output = factor_from_one(self.momentum(&self.responses, [T::ONE, power], output_sign)?);
-        let least = if motor < output { motor } else { output };
-        (least < self.table.torque_factor).then_some(motor < output)
+        let smaller = if motor < output { motor } else { output };
+        (smaller < self.table.torque_factor).then_some(motor < output)
     }
 
     /// Momentum per unit of torque, if the angles of motor and output are wrong by the factors given and the output
@@ -593,8 +594,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         let square = period * period;
         let by_clock = factor_from_one(nearest(T::ONE));
         let by_rate = factor_from_one(nearest(square) / at_least_smallest(square));
-        let least = if by_clock < by_rate { by_clock } else { by_rate };
-        if least < self.table.torque_factor {
+        let smaller = if by_clock < by_rate { by_clock } else { by_rate };
+        if smaller < self.table.torque_factor {
             let (rate, clock) = (WiringItem::Period, WiringItem::Clock);
             let (right, wrong) = if by_clock < by_rate { (rate, clock) } else { (clock, rate) };
             wiring.set(right, WiringVerdict::Right);

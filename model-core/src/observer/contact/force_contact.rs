@@ -1,5 +1,10 @@
-//! Contact detection by the mesh force alone, with hysteresis and persistence. Needs no half-gap and is therefore
-//! available first.
+//! Contact detection by the mesh force F alone, of standard deviation s. Needs no half-gap and is therefore available
+//! first.
+//!
+//! ```text
+//! contact begins:  |F| > 2 s,  for `persistence` control periods
+//! contact ends:    |F| < s,    for `persistence` control periods
+//! ```
 
 use super::thresholds::CONTACT;
 use crate::gears::Flank;

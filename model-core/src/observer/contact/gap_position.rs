@@ -1,5 +1,12 @@
-//! Contact detection by deflection and mesh force (O10), once the half-gap is known well enough, and the gap coordinate
-//! (O8). Symbols: d_t = `deflection`, c = `half_gap`, 1/κ = `stiffness`, g = `weight`, y = `excess`, F_b = `combined_force`.
+//! Contact detection by deflection and mesh force, once the half-gap is known well enough, and the gap coordinate:
+//!
+//! ```text
+//! (O8)  X = d_t  for |d_t| < c;   X = sign(d_t) (c + (κ_m/κ) (|d_t| - c))  beyond an edge
+//! (O10) y = |d_t| - c,   F_b = F + g (side y/κ - F)
+//! ```
+//!
+//! Symbols: d_t = `deflection`, c = `half_gap`, κ_m/κ = `mesh_share`, y = `excess`, F = `force`, F_b =
+//! `combined_force`, g = `weight`, 1/κ = `stiffness`. X is `gap_coordinate` without the transmission error.
 
 use super::force_contact::with_hysteresis;
 use crate::gears::Flank;

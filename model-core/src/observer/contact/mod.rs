@@ -1,6 +1,6 @@
 //! Contact detection for a controller: by the mesh force alone, by force and deflection (O8, O10), or, without an
-//! output encoder, by `health::link_without_encoder`. `identification::flank` decides separately on which flank a rest is used for
-//! estimation.
+//! output encoder, by `health::link_without_encoder`. `identification::flank` decides separately on which flank a rest
+//! is used for estimation.
 
 pub mod force_contact;
 pub mod gap_position;

@@ -37,8 +37,8 @@ pub fn design_probe<T: Real>(
 ) -> Result<ProbeTable<T>, DesignError> {
     let tables: ObserverTables<f64> = design_observer(joint, settings)?;
     // The single torque is at least twice the expected friction.
-    let least = 4.0 * settings.torque_uncertainty;
-    if !(torque >= least && torque <= settings.torque_limit) {
+    let min_torque = 4.0 * settings.torque_uncertainty;
+    if !(torque >= min_torque && torque <= settings.torque_limit) {
         let must_be = "at least four times the torque uncertainty and at most the torque limit";
         return Err(DesignError::OutOfRange { what: TORQUE, given: torque, must_be });
     }

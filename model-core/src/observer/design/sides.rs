@@ -11,7 +11,8 @@ use crate::numbers::Real;
 use crate::observer::tables::{CurrentTable, DriveTable};
 
 /// Motor-side filter with the states angle, speed and taken torque. The taken torque is a random walk that changes by
-/// `FILTERS.mesh_change` of the largest torque in half a swing of motor against load; the torque noise acts on the speed.
+/// `FILTERS.mesh_change` of the largest torque in half a swing of motor against load; the torque noise acts on the
+/// speed.
 pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.motor_inertia;
     // Faster swings are not followed: the noise would cost more than the bandwidth gains.

@@ -1,5 +1,11 @@
-//! Correction by a reading older than a control period (O3): the innovation compares the reading with the prediction
-//! for its time, and the gain carries the correction to now.
+//! Correction by a reading older than a control period:
+//!
+//! ```text
+//! (O3)  z = n T (w - n T w'/2) - a,   state += exp(A n T) G z
+//! ```
+//!
+//! Symbols: n = `periods`, T = `period`, T w' = `speed_change`, n T (w - n T w'/2) = `travel`, exp(A n T) G =
+//! `gain_now`.
 //!
 //! Treating a delayed reading as current closes a second feedback path: with an 18-bit encoder the filter is unstable
 //! from 2 periods of delay on.

@@ -1,9 +1,20 @@
-//! Disturbance observer of the motor side (O2; late readings O3): estimates the torque that meshes and friction take
-//! from the motor. `identification::bias` separates the two. Symbols: a = `angle_residual`, w_m = `speed`, t = `disturbance_torque`, u = `air_gap`,
-//! G = `gain`.
+//! Disturbance observer of the motor side: a steady-state Kalman filter that estimates the torque of meshes and
+//! friction. `identification::bias` separates the two.
 //!
-//! Each period the state follows the linear flow of the tables, current loop included. `gain` times the innovation, the
-//! measured less the predicted angle, then corrects angle, speed and taken torque; the air-gap torque is not corrected.
+//! ```text
+//! (O2)  a' = w_m,  J_m w_m' = u - t,  t' = noise          u follows the delayed command with the current lag
+//!       fresh reading:  z = age w_m - a,  (a, w_m, t) += G z
+//! (O3)  late reading:   z = n T (w_m - n T w_m'/2) - a,  (a, w_m, t) += exp(A n T) G_late z
+//! ```
+//!
+//! | symbol | code | |
+//! |---|---|---|
+//! | a | `angle_residual` | angle beyond the counts [rad] |
+//! | w_m | `speed` | motor speed [rad/s] |
+//! | t | `disturbance_torque` | torque of meshes and friction [N m] |
+//! | u | `air_gap` | air-gap torque, not corrected [N m] |
+//! | z, G, G_late | `innovation`, `gain`, `late_gain` | |
+//! | n, T | `Delayed::periods`, `Delayed::period` | age of the reading [periods], control period [s] |
 
 use super::delayed::Delayed;
 use super::thresholds::MotorSideThresholds;
@@ -29,22 +40,23 @@ pub struct DriveSide<T: Real> {
 impl<T: Real> DriveSide<T> {
     const LIMITS: MotorSideThresholds<T> = MotorSideThresholds::TUNED;
 
-    /// Predicts the state over one period under the command in force; `turned` is the travel of the counts [rad].
-    pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
+    /// Predicts the state over one period under the command in force; `counted_angle` is the travel of the counts [rad].
+    pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, counted_angle: T) {
         self.commands.rotate_right(1);
         self.commands[0] = command;
         let at = |ago: u32| self.commands.get(ago as usize).copied().unwrap_or(command);
         let newer = at(current.whole_delay);
-        let wanted = newer + current.part_delay * (at(current.whole_delay + 1) - newer);
-        let [from_speed, from_taken, from_air_gap, from_wanted] = table.angle;
+        let delayed_command = newer + current.part_delay * (at(current.whole_delay + 1) - newer);
+        let [from_speed, from_disturbance, from_air_gap, from_command] = table.angle;
         self.angle_residual += from_speed * self.speed
-            + from_taken * self.disturbance_torque
+            + from_disturbance * self.disturbance_torque
             + from_air_gap * self.air_gap
-            + from_wanted * wanted
-            - turned;
-        let [from_taken, from_air_gap, from_wanted] = table.speed;
-        self.speed += from_taken * self.disturbance_torque + from_air_gap * self.air_gap + from_wanted * wanted;
-        self.air_gap += current.rise * (wanted - self.air_gap);
+            + from_command * delayed_command
+            - counted_angle;
+        let [from_disturbance, from_air_gap, from_command] = table.speed;
+        self.speed +=
+            from_disturbance * self.disturbance_torque + from_air_gap * self.air_gap + from_command * delayed_command;
+        self.air_gap += current.rise * (delayed_command - self.air_gap);
         let torque = self.air_gap.abs();
         self.peak_torque = if torque > self.peak_torque {
             torque

@@ -1,5 +1,11 @@
-//! Disturbance observer of the load side (O4): estimates angle, speed and load torque of the link. Input is the mesh
-//! torque. Symbols: a = `angle_residual`, w_l = `speed`, t_l = `torque`.
+//! Disturbance observer of the load side: a steady-state Kalman filter for angle, speed and load torque of the link.
+//!
+//! ```text
+//! (O4)  a' = w_l,  J_l w_l' = m r_o F - t_l,  t_l' = noise
+//!       reading:  z = age w_l - a,  (a, w_l, t_l) += G z          older than a period: as (O3)
+//! ```
+//!
+//! Symbols: a = `angle_residual`, w_l = `speed`, t_l = `torque`, m r_o F = `mesh_torque`, z = `innovation`, G = `gain`.
 //!
 //! The angle is relative to a reference: the output counts or, without an output encoder, the motor counts over the
 //! ratio.
@@ -20,28 +26,28 @@ pub struct LoadSide<T: Real> {
 }
 
 impl<T: Real> LoadSide<T> {
-    /// Predicts the state over one period under a mesh torque; `turned` is the travel of the reference [rad].
-    pub fn predict(&mut self, table: &LoadTable<T>, from_meshes: T, turned: T) {
-        let net = from_meshes - self.torque;
+    /// Predicts the state over one period under a mesh torque; `reference_angle` is the travel of the reference [rad].
+    pub fn predict(&mut self, table: &LoadTable<T>, mesh_torque: T, reference_angle: T) {
+        let net = mesh_torque - self.torque;
         let [from_speed, from_net] = table.angle;
-        self.angle_residual += from_speed * self.speed + from_net * net - turned;
+        self.angle_residual += from_speed * self.speed + from_net * net - reference_angle;
         self.speed += table.speed * net;
     }
 
     /// Corrects by a reading at the reference, with its age [s], under a mesh torque.
-    pub fn correct(&mut self, table: &LoadTable<T>, age: T, from_meshes: T) {
+    pub fn correct(&mut self, table: &LoadTable<T>, age: T, mesh_torque: T) {
         let [period, _] = table.angle;
         if age < period {
             return self.apply(&table.gain, self.speed * age - self.angle_residual);
         }
-        self.correct_late(table, age, from_meshes);
+        self.correct_late(table, age, mesh_torque);
     }
 
     /// Corrects by a reading older than a period, including the change of speed since then.
     #[cold]
-    fn correct_late(&mut self, table: &LoadTable<T>, age: T, from_meshes: T) {
+    fn correct_late(&mut self, table: &LoadTable<T>, age: T, mesh_torque: T) {
         let [period, _] = table.angle;
-        let speed_change = table.speed * (from_meshes - self.torque);
+        let speed_change = table.speed * (mesh_torque - self.torque);
         let delayed = Delayed { periods: age / period, period, speed_change, speed_per_torque: -table.speed };
         self.apply(&delayed.gain_now(&table.gain), delayed.travel(self.speed) - self.angle_residual);
     }

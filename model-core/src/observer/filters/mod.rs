@@ -78,8 +78,8 @@ impl<T: Real> Filters<T> {
     pub fn correct_unseen_load(&mut self, table: &LoadTable<T>, correction: LoadCorrection<T>, per_ratio: T) {
         match correction {
             LoadCorrection::None => {}
-            LoadCorrection::TurnsWithMotor(further) => {
-                self.load.angle_residual += further;
+            LoadCorrection::TurnsWithMotor(angle) => {
+                self.load.angle_residual += angle;
                 self.load.speed = self.drive.speed * per_ratio;
             }
             LoadCorrection::InContact(innovation) => self.load.apply(&table.motor_only_gain, innovation),

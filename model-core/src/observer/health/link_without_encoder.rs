@@ -1,8 +1,15 @@
-//! Link without an output encoder (O26, O27): observed through touching teeth, unobservable in the open gap.
+//! Link without an output encoder: observed through touching teeth, unobservable in the open gap.
+//!
+//! ```text
+//! (O26) var(X) = var(edge) + noise + t_o^2 (bounce^2 + r_o^2 var(w_l)) + t_o^4 (r_o/(2 J_l))^2 var(t_l)
+//! (O27) contact is likelier than an open gap:  F^2 > 2 s_F^2 ln(F_max/(sqrt(2 pi) s_F))
+//! ```
+//!
+//! Symbols: t_o = `time` since certain contact, bounce = `landing_speed`, r_o/(2 J_l) = `deflection_per_torque`, F =
+//! `force`, s_F = `mean_force_deviation`.
 //!
 //! In contact the deflection is the half-gap plus the wind-up of the mesh force, which the motor side gives; the load
-//! side is corrected towards this deflection. In the open gap the load side runs on under the last load torque: the
-//! variance of the gap coordinate grows with the square of time for the speed and with the fourth power for the torque.
+//! side is corrected towards this deflection. In the open gap the load side runs on under the last load torque.
 //!
 //! The smoothed force has two contact thresholds: the reported contact needs a force that is likelier with contact than
 //! without; the correction of the load side needs a force that no bias explains.

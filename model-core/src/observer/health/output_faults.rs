@@ -1,5 +1,14 @@
-//! Faults of the output encoder (O23, O24), in the order of the checks. The first check that fails excludes the
-//! encoder:
+//! Faults of the output encoder:
+//!
+//! ```text
+//! (O23) |d_t| < wind-up + c + 3 sigma(edge) + 0.1 (c + κ F_max)
+//! (O24) |change of d_t less wind-up| > 2 (c + 3 sigma(c) + 0.1 (c + κ F_max) + 2 sigma(κ) |F|) + 1 count
+//! ```
+//!
+//! Symbols: d_t = `deflection`, c + 3 sigma(edge) + 0.1 (...) = `Uncertainty::reach`, change of d_t = `travel`, 0.1 (c
+//! + κ F_max) = `margin`, 2 sigma(κ) = `compliance_uncertainty`.
+//!
+//! The first check that fails excludes the encoder:
 //!
 //! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
@@ -30,8 +39,8 @@ pub struct OutputFaultDetector<T: Real> {
     silent_periods: u16,
     standstill_periods: u16,
     out_of_range_for: u16,
-    /// Deflection of the teeth in the last period [m]. `has_jumped`: the deflection jumped to its present place, beyond its
-    /// range or within the margin of its end.
+    /// Deflection of the teeth in the last period [m]. `has_jumped`: the deflection jumped to its present place, beyond
+    /// its range or within the margin of its end.
     deflection: T,
     has_jumped: bool,
     /// Deflection less wind-up when the counts last changed [m].

@@ -1,8 +1,18 @@
-//! Plausibility of successive readings (O21, O22): no shaft can follow counts that stand still at once or jump.
+//! Plausibility of successive readings: no shaft can follow counts that stand still at once or jump.
+//!
+//! ```text
+//! (O21) link:   n (v (1 - n/(2 n_st)) - n B) > 2 counts + 4 noise,   n <= n_st
+//! (O22) motor:  n (max(f(r) (1 - n/(2 n_s)), f(|r_l| - |r - r_l|)) - n B) > 2 counts + 4 noise
+//!       jump:   |reading - predicted| > 8 counts + 8 noise + impact
+//! ```
+//!
+//! Symbols, in counts and periods: v, r = `rate`, n = `standstill_readings`, n_st, n_s = `stop`, B =
+//! `half_deceleration`, f = `lower_speed_bound`, f(|r_l| - ...) = `speed_kept_by_teeth`, impact =
+//! `impact_speed_change`, noise = mean deviation.
 //!
 //! A link is braked by load and teeth with at most their torque, and by an obstacle over a time that does not depend on
 //! the speed (a spring). From the speed follows the least travel of the next few periods. A motor is braked by its own
-//! torque and by teeth, which act as a spring and also throw the motor back: its speed may jump by its own speed or by
+//! torque and by teeth, which act as a spring and also push the motor back: its speed may jump by its own speed or by
 //! twice the link's. A motor that turns with the link is not stopped by teeth: one flank pulls away, the other drives
 //! the motor on.
 

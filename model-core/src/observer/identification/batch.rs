@@ -1,4 +1,11 @@
-//! Averages of learning intervals in settled contact (O15), each a measurement of the deflection.
+//! Averages of learning intervals on a flank, each a measurement of the deflection with the likeliest force:
+//!
+//! ```text
+//! (O15) F_k = mean + (F_h - mean) max(0, 1 - var(noise)/var(F_h))
+//! ```
+//!
+//! Symbols: F_h = `force`, mean = `ForceStatistics::mean`, var(F_h) = `ForceStatistics::variance`, var(noise) =
+//! `force_noise`.
 
 use super::interval::Dwell;
 use super::regressors::{ContactSample, Regressors};
@@ -25,9 +32,9 @@ pub struct IntervalSample<'mean, T: Real, const P: usize> {
 #[derive(Debug, Clone, Copy)]
 pub struct Batch<T: Real, const P: usize> {
     intervals: u8,
-    /// Averaged intervals of a touch that ended early, otherwise 0.
+    /// Averaged intervals of a contact that ended early, otherwise 0.
     contact_intervals: u8,
-    /// Blocks in the mean force on the drive flank and on the back flank.
+    /// Batches in the mean force on the drive flank and on the back flank.
     batches: [u8; 2],
     contact: ContactSample<T>,
     open_gap: Regressors<T, P>,
@@ -36,7 +43,7 @@ pub struct Batch<T: Real, const P: usize> {
     forces: [ForceStatistics<T>; 2],
 }
 
-/// Forces of the last blocks on one flank.
+/// Forces of the last batches on one flank.
 #[derive(Debug, Clone, Copy)]
 struct ForceStatistics<T: Real> {
     /// Mean [N].
@@ -48,11 +55,11 @@ struct ForceStatistics<T: Real> {
 impl<T: Real> ForceStatistics<T> {
     const NONE: Self = Self { mean: T::ZERO, variance: T::ZERO };
 
-    /// Updates mean and variance with a block's force and returns the likeliest force (O15). Noise would count as force
+    /// Updates mean and variance with a batch's force and returns the likeliest force (O15). Noise would count as force
     /// that the deflection does not follow, hence as stiffness: a variation no larger than the noise is treated as
     /// constant force.
-    fn update(&mut self, blocks: u8, force: T, noise: T) -> T {
-        let share = T::ONE / T::from_i32(blocks.into());
+    fn update(&mut self, count: u8, force: T, noise: T) -> T {
+        let share = T::ONE / T::from_i32(count.into());
         let change = force - self.mean;
         self.mean += change * share;
         let excess = force - self.mean;
@@ -80,7 +87,7 @@ impl<T: Real, const P: usize> Batch<T, P> {
         Self::NEW
     }
 
-    /// Begins a new block on a flank.
+    /// Begins a new batch on a flank.
     fn begin_on(&mut self, flank: Option<Flank>) {
         let contact = ContactSample { flank, ..ContactSample::OPEN };
         *self = Self { batches: self.batches, forces: self.forces, contact, ..Self::new() };
@@ -92,12 +99,18 @@ impl<T: Real, const P: usize> Batch<T, P> {
         free.chain([&mut self.deflection, &mut self.contact.force]).for_each(|sum| *sum *= by);
     }
 
-    /// Adds an interval. Returns true once a block is full, or once a touch on a known flank has ended after at least
-    /// `least` intervals.
-    pub fn add(&mut self, mean: &IntervalSample<'_, T, P>, dwell: Dwell, least: u8, table: &LearnerTable<T>) -> bool {
+    /// Adds an interval. Returns true once a batch is full, or once a contact on a known flank has ended after at least
+    /// `shortest` intervals.
+    pub fn add(
+        &mut self,
+        mean: &IntervalSample<'_, T, P>,
+        dwell: Dwell,
+        shortest: u8,
+        table: &LearnerTable<T>,
+    ) -> bool {
         let length = table.block as u8;
         let Dwell::On(flank) = dwell else {
-            if (least..length).contains(&self.intervals) && self.contact.flank.is_some() {
+            if (shortest..length).contains(&self.intervals) && self.contact.flank.is_some() {
                 self.contact_intervals = self.intervals;
                 self.scale(T::from_i32(length.into()) / T::from_i32(self.contact_intervals.into()));
                 self.intervals = length;
@@ -106,7 +119,7 @@ impl<T: Real, const P: usize> Batch<T, P> {
             self.begin_on(None);
             return false;
         };
-        // A rest stays on one flank, even while no force shows the flank.
+        // A dwell stays on one flank, even while no force shows the flank.
         let known_flank = flank.or(self.contact.flank);
         let is_other_flank = known_flank != self.contact.flank && self.contact.flank.is_some();
         if is_other_flank || self.intervals >= length {
@@ -126,19 +139,19 @@ impl<T: Real, const P: usize> Batch<T, P> {
         let [drive, back] = &mut self.forces;
         let [batches_drive, batches_back] = &mut self.batches;
         let is_drive_flank = known_flank == Some(Flank::Drive);
-        let (forces, blocks) = if is_drive_flank { (drive, batches_drive) } else { (back, batches_back) };
-        *blocks = (*blocks + 1).min(Self::LIMITS.force_batches);
-        self.contact.force = forces.update(*blocks, self.contact.force, table.force_noise);
+        let (forces, count) = if is_drive_flank { (drive, batches_drive) } else { (back, batches_back) };
+        *count = (*count + 1).min(Self::LIMITS.force_batches);
+        self.contact.force = forces.update(*count, self.contact.force, table.force_noise);
         true
     }
 
-    /// Regressors and deflection [m] of a full block.
+    /// Regressors and deflection [m] of a full batch.
     pub fn measurement(&self) -> (Regressors<T, P>, T) {
         (self.contact.add_to(&self.open_gap), self.deflection)
     }
 
-    /// Weight of a full block relative to a usual deflection [-]. A touch that ended early is averaged less, and teeth
-    /// that leave or land are not at rest; while the half-gap is unknown, the teeth may not have touched.
+    /// Weight of a full batch relative to a usual deflection [-]. A contact that ended early is averaged less, and
+    /// teeth that leave or land are not at rest; while the half-gap is unknown, the teeth may not have touched.
     pub fn relative_weight(&self, table: &LearnerTable<T>, half_gap_is_known: bool) -> T {
         if self.contact_intervals == 0 {
             T::ONE
@@ -149,12 +162,12 @@ impl<T: Real, const P: usize> Batch<T, P> {
         }
     }
 
-    /// Flank of a full block; `None` if unknown.
+    /// Flank of a full batch; `None` if unknown.
     pub fn flank(&self) -> Option<Flank> {
         self.contact.flank
     }
 
-    /// Sets the flank of a full block.
+    /// Sets the flank of a full batch.
     pub fn set_flank(&mut self, flank: Option<Flank>) {
         self.contact.flank = flank;
     }

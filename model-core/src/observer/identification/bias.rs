@@ -1,5 +1,11 @@
-//! Torque bias and dry friction of the motor (O16), measured inside the gap, where the meshes carry no force: a
-//! recursive least squares with two bounded parameters.
+//! Torque bias and dry friction of the motor, measured inside the gap, where the meshes carry no force: a recursive
+//! least squares with two bounded parameters.
+//!
+//! ```text
+//! (O16) gap open:  t/r_s = bias + friction dir + noise,   friction >= 0
+//! ```
+//!
+//! Symbols: t/r_s = `force`, dir = `direction`, var(noise) = `bias_noise`.
 
 use super::thresholds::OUTLIER;
 use crate::numbers::Real;
@@ -23,12 +29,12 @@ impl<T: Real> TorqueBias<T> {
     /// Returns true if bias and friction are within their limits and no variance exceeds the initial one.
     pub fn is_in_range(&self, table: &ContactTable<T>) -> bool {
         let [bias, friction, both] = self.variance;
-        let most = table.bias_prior + table.bias_drift;
+        let max_variance = table.bias_prior + table.bias_drift;
         self.bias.abs() <= table.bias_limit
             && self.friction >= T::ZERO
             && self.friction <= table.bias_limit
-            && [bias, friction].iter().all(|variance| *variance >= T::ZERO && *variance <= most)
-            && both.abs() <= most
+            && [bias, friction].iter().all(|variance| *variance >= T::ZERO && *variance <= max_variance)
+            && both.abs() <= max_variance
     }
 
     /// Direction of dry friction at a motor speed, from -1 to 1: proportional where noise hides the sign.

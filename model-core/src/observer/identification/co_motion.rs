@@ -9,18 +9,18 @@ use crate::numbers::Real;
 /// Rest in which motor and link move together.
 #[derive(Debug, Clone, Copy)]
 pub struct CoMotion<T: Real> {
-    /// Change of the deflection from the rest on the other flank to the beginning of this rest, upwards positive; 0 if
-    /// unknown [m].
+    /// Change of the deflection from the dwell on the other flank to the beginning of this dwell, upwards positive; 0
+    /// if unknown [m].
     span: T,
-    /// Change of the deflection since the beginning of this rest, upwards positive [m].
+    /// Change of the deflection since the beginning of this dwell, upwards positive [m].
     drift: T,
-    /// Travel of the link per block at the beginning of this rest [m].
+    /// Travel of the link per batch at the beginning of this dwell [m].
     initial_travel: T,
     /// Travel of the link since then in excess of a motion at that speed [m].
     link_departure: T,
 }
 
-/// Relation of a rest to the last one.
+/// Relation of a dwell to the last one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeflectionChange {
     /// The flank has changed: the deflection moved too far for one flank.
@@ -38,9 +38,9 @@ impl<T: Real> CoMotion<T> {
 
     pub const NONE: Self = Self { span: T::ZERO, drift: T::ZERO, initial_travel: T::ZERO, link_departure: T::ZERO };
 
-    /// Updates the state with a block: its relation to the last block, the change of the deflection, the travel of the
-    /// link, and `is_continuous` if the rest was not interrupted. Without `link_moves` the travel is not counted: friction may
-    /// hold the link.
+    /// Updates the state with a batch: its relation to the last batch, the change of the deflection, the travel of the
+    /// link, and `is_continuous` if the dwell was not interrupted. Without `link_moves` the travel is not counted:
+    /// friction may hold the link.
     pub fn step(
         &mut self,
         change: DeflectionChange,
@@ -68,7 +68,7 @@ impl<T: Real> CoMotion<T> {
         if proven > estimate { proven } else { estimate }
     }
 
-    /// Takes the flank of this rest from the force.
+    /// Takes the flank of this dwell from the force.
     pub fn confirm_flank(&mut self, flank: Flank) {
         if flank.sign::<T>() * self.span < T::ZERO {
             self.span = T::ZERO;
@@ -81,7 +81,7 @@ impl<T: Real> CoMotion<T> {
         self.link_departure.abs() > T::from_i32(Self::LIMITS.departure) * T::TWO * half_gap
     }
 
-    /// Flank of this rest, if the link has departed by `Self::LIMITS.departure` spans since the crossing.
+    /// Flank of this dwell, if the link has departed by `Self::LIMITS.departure` spans since the crossing.
     pub fn flank(&self) -> Option<Flank> {
         let span = self.span.abs();
         let has_departed = self.link_departure.abs() > T::from_i32(Self::LIMITS.departure) * span;
@@ -96,7 +96,7 @@ impl<T: Real> CoMotion<T> {
 mod tests {
     use super::*;
 
-    /// Co-motion after a crossing by a span, and `blocks` in which the link accelerates by a unit of travel each.
+    /// Co-motion after a crossing by a span, and `batches` in which the link accelerates by a unit of travel each.
     fn crossed(span: f32, blocks: u8) -> CoMotion<f32> {
         let mut co_motion = CoMotion::NONE;
         co_motion.step(DeflectionChange::Crossed, span, 0.0, true, true);

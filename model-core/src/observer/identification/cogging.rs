@@ -68,9 +68,13 @@ impl<T: Real> Cogging<T> {
         let faster = fast - *second;
         *second += table.slow * faster;
         self.speed += table.steady * (speed - self.speed);
-        let [least, most] = table.speeds;
+        let [min_speed, max_speed] = table.speeds;
         let steady = (speed - self.speed).abs() < table.unsteady * speed.abs();
-        if self.carrying_intervals >= table.settled_after && steady && speed.abs() > least && speed.abs() < most {
+        if self.carrying_intervals >= table.settled_after
+            && steady
+            && speed.abs() > min_speed
+            && speed.abs() < max_speed
+        {
             self.correct(table, -faster, load_regressors(table, place, speed));
         }
     }

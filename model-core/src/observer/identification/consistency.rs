@@ -1,4 +1,4 @@
-//! Consistency of rests with the estimated parameters: a rest is accepted or rejected; repeated rejections reset the
+//! Consistency of dwells with the estimated parameters: a dwell is accepted or rejected; repeated rejections reset the
 //! half-gap, as teeth wear, and finally all parameters.
 
 use super::thresholds::CONSISTENCY;
@@ -11,15 +11,15 @@ pub struct Consistency {
     gap_force_intervals: u8,
     /// Consecutive outliers.
     outliers: u8,
-    /// Accepted rests on the back flank and on the drive flank since the half-gap was last in doubt.
+    /// Accepted dwells on the back flank and on the drive flank since the half-gap was last in doubt.
     accepted: [u8; 2],
     /// Recent errors that were attributed to the variation of the half-gap around the turn.
     variation_errors: u8,
-    /// Accepted rests since the last of these errors.
+    /// Accepted dwells since the last of these errors.
     accepted_since_error: u8,
 }
 
-/// Deviation of a rest, or of a force between the flanks, from the estimated parameters.
+/// Deviation of a dwell, or of a force between the flanks, from the estimated parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviationSize {
     /// Less than the tolerance of a known half-gap.
@@ -91,7 +91,7 @@ impl Consistency {
         }
     }
 
-    /// Counts an accepted rest.
+    /// Counts an accepted dwell.
     pub fn accept(&mut self, flank: Option<Flank>) {
         self.outliers = 0;
         self.accepted_since_error = self.accepted_since_error.saturating_add(1);

@@ -8,7 +8,7 @@
 //! | 4 | change of the deflection since the last rest ([`LastDwell::flank`]) | a crossing above noise, a force on that side | bias hides the sign of a light force | `observer learning::teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width` |
 //! | 5 | common motion of motor and link ([`CoMotion::flank`]) | a crossing, and a link that has left its course since | contact without any force | `observer learning::a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes` |
 //!
-//! If no row holds, a rest updates only parameters that do not depend on the flank.
+//! If no row holds, a dwell updates only parameters that do not depend on the flank.
 //!
 //! [`LastDwell::flank`]: super::last_dwell::LastDwell::flank
 //! [`CoMotion::flank`]: super::co_motion::CoMotion::flank

@@ -1,8 +1,8 @@
-//! Variation of the half-gap around the turn (O20): worn gears vary by 30 %. A link that turns while one flank carries
-//! does not reveal this variation, which is attributed to encoder errors and offset.
+//! Variation of the half-gap around the turn, v_c and D_l of (O20): worn gears vary by 30 %. A link that turns while
+//! one flank carries does not reveal this variation, which is attributed to encoder errors and offset.
 //!
-//! Symbols: c half-gap, D angle of the link since the last dwell on a flank, e^2 the squared innovation of the first rest
-//! after the return to that flank, less its variance.
+//! Symbols: c half-gap, D angle of the link since the last dwell on a flank, e^2 the squared innovation of the first
+//! dwell after the return to that flank, less its variance.
 //!
 //! ```text
 //! v^2 = (V0^2 N0 + sum of (e/c)^2) / (N0 + sum of D^2)       variation of the half-gap for a radian (1)
@@ -14,14 +14,14 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::CountTable;
 
-/// Place of the last rest on each flank, and the observed variation of the half-gap.
+/// Place of the last dwell on each flank, and the observed variation of the half-gap.
 #[derive(Debug, Clone, Copy)]
 pub struct GapVariation<T: Real> {
     /// Present place of the link in its turn [2^-32 turns].
     position: u32,
-    /// Place of the last accepted rest on the drive flank and on the back flank [2^-32 turns].
+    /// Place of the last accepted dwell on the drive flank and on the back flank [2^-32 turns].
     dwell_positions: [Option<u32>; 2],
-    /// Flank of the last rest.
+    /// Flank of the last dwell.
     last_flank: Option<Flank>,
     /// Sums of (1): squared relative variations [-], and squared angles [rad^2].
     sums: [T; 2],
@@ -47,8 +47,8 @@ impl<T: Real> GapVariation<T> {
         self.position = phase;
     }
 
-    /// Updates the variation with a rest on a flank: its squared deviation with the variance expected [m^2], the
-    /// half-gap [m], and whether the rest was accepted.
+    /// Updates the variation with a dwell on a flank: its squared deviation with the variance expected [m^2], the
+    /// half-gap [m], and whether the dwell was accepted.
     pub fn add_dwell(
         &mut self,
         table: &CountTable<T>,

@@ -1,10 +1,16 @@
-//! Inertia of the link (O6), from its response to mesh forces that change faster than a weight's torque: a landing, an
+//! Inertia of the link, from its response to mesh forces that change faster than a weight's torque: a landing, an
 //! oscillation of the teeth, a push. Slow responses are not used: weight and inertia are not separable there.
 //!
-//! The load filter is linear. Its torque is mobility (designed inertia over inertia) times its response to the mesh
-//! torque on a stationary link, less its response to the motion alone. The first response is computed here, once per
-//! interval. Force and response of the link thus pass one filter, and a changed mobility can be applied to the load
-//! side in retrospect.
+//! ```text
+//! (O6)  high_pass(m_now t_f - t_l) = m high_pass(t_f) + noise
+//! ```
+//!
+//! Symbols: m_now = `mobility`, t_f = `stationary_response.torque`, t_l = `load.torque`; left side = `answer`,
+//! high_pass(t_f) = `force`.
+//!
+//! The load filter is linear. Its torque is mobility (designed inertia over inertia) times its response t_f to the mesh
+//! torque on a stationary link, less its response to the motion alone. Force and response of the link thus pass one
+//! filter, and a changed mobility can be applied to the load side in retrospect.
 
 use super::thresholds::OUTLIER;
 use crate::numbers::Real;

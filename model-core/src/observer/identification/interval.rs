@@ -16,7 +16,7 @@ pub struct Interval<T: Real> {
     pub direction: T,
     /// Nearer flank in the last interval.
     pub nearer_flank: Flank,
-    /// Flank of the last rest that updated the parameters.
+    /// Flank of the last dwell that updated the parameters.
     pub updated_on: Option<Flank>,
     /// Flank of the last settled contact, until the teeth leave it.
     pub settled_flank: Option<Flank>,
@@ -26,7 +26,7 @@ pub struct Interval<T: Real> {
     pub loaded_flank: Option<Flank>,
     /// Mesh force averaged over a few intervals [N].
     pub steady_force: T,
-    /// Mesh force averaged over the whole rest, landing included [N].
+    /// Mesh force averaged over the whole dwell, landing included [N].
     pub dwell_force: T,
     /// Consecutive intervals well inside the gap.
     pub open_intervals: u8,
@@ -88,7 +88,7 @@ impl<T: Real> Interval<T> {
 /// Rest of the teeth in an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dwell {
-    /// No rest is known.
+    /// No dwell is known.
     No,
     /// Rest on a flank; `None` for an unknown flank.
     On(Option<Flank>),
@@ -99,13 +99,13 @@ pub enum Dwell {
 pub enum Task {
     /// No task is left.
     Done,
-    /// Updates the inertia from the link's response to the force; true if a rest follows.
+    /// Updates the inertia from the link's response to the force; true if a dwell follows.
     Inertia(bool),
-    /// Determines the flank of the rest.
+    /// Determines the flank of the dwell.
     Flank,
-    /// Accepts or rejects a rest on a flank.
+    /// Accepts or rejects a dwell on a flank.
     CheckDwell,
-    /// Updates the parameters with the rest.
+    /// Updates the parameters with the dwell.
     UpdateParameters,
     /// Updates the variances.
     Uncertainty,

@@ -1,4 +1,4 @@
-//! Flank of a rest from the change of the deflection since the last rest: an upward change means the drive flank,
+//! Flank of a dwell from the change of the deflection since the last dwell: an upward change means the drive flank,
 //! regardless of force and bias.
 
 use super::thresholds::FLANK;
@@ -11,16 +11,16 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::LearnerTable;
 
-/// Last rest of the teeth.
+/// Last dwell of the teeth.
 #[derive(Debug, Clone, Copy)]
 pub struct LastDwell<T: Real, const P: usize> {
-    /// Regressors of the last rest.
+    /// Regressors of the last dwell.
     regressors: Regressors<T, P>,
     flank: Option<Flank>,
     deflection: T,
     co_motion: CoMotion<T>,
     is_stored: bool,
-    /// True until the rest is interrupted.
+    /// True until the dwell is interrupted.
     is_continuous: bool,
 }
 
@@ -40,7 +40,7 @@ impl<T: Real, const P: usize> LastDwell<T, P> {
         Self::NEW
     }
 
-    /// Stores a rest.
+    /// Stores a dwell.
     pub fn store(&mut self, regressors: &Regressors<T, P>, deflection: T, flank: Option<Flank>) {
         *self = Self {
             regressors: *regressors,
@@ -62,13 +62,13 @@ impl<T: Real, const P: usize> LastDwell<T, P> {
         &mut self.co_motion
     }
 
-    /// Returns true if the last rest was on this flank; `None` stands for an unknown flank.
+    /// Returns true if the last dwell was on this flank; `None` stands for an unknown flank.
     pub fn was_on(&self, flank: Option<Flank>) -> bool {
         self.flank == flank
     }
 
-    /// Innovation of a rest predicted from the last rest's deflection; `None` without a last rest. Teeth that stay on
-    /// one flank, even an unknown one, show the parameters that do not depend on the flank.
+    /// Innovation of a dwell predicted from the last dwell's deflection; `None` without a last dwell. Teeth that stay
+    /// on one flank, even an unknown one, show the parameters that do not depend on the flank.
     pub fn innovation(
         &self,
         table: &LearnerTable<T>,
@@ -85,8 +85,8 @@ impl<T: Real, const P: usize> LastDwell<T, P> {
         self.is_stored.then(|| least_squares.innovation(table, &between, deflection - self.deflection, weight))
     }
 
-    /// Flank of the new rest; `None` if the change is neither larger than all other influences nor small enough for the
-    /// same flank. While the link hardly moves, the flank stays unknown: motor and link may rest with open teeth.
+    /// Flank of the new dwell; `None` if the change is neither larger than all other influences nor small enough for
+    /// the same flank. While the link hardly moves, the flank stays unknown: motor and link may rest with open teeth.
     pub fn flank(
         &mut self,
         table: &LearnerTable<T>,

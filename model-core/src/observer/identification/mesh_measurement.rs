@@ -1,6 +1,7 @@
-//! Motor and load side combined in one control period (O7, O9), before any decision. [`ParameterEstimator::fuse`] makes it.
+//! Motor and load side combined in one control period (O7, O9), before any decision.
+//! [`ParameterEstimator::measure_mesh`] makes it.
 //!
-//! [`ParameterEstimator::fuse`]: super::ParameterEstimator::fuse
+//! [`ParameterEstimator::measure_mesh`]: super::ParameterEstimator::measure_mesh
 
 use crate::numbers::Real;
 

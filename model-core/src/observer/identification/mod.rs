@@ -1,18 +1,27 @@
-//! Estimation of joint, encoder and motor parameters during motion: half-gap, offset, compliance, skew, transmission
-//! error and error maps by one recursive least squares (`least_squares`); bias and friction of the motor (`bias`); cogging
-//! (`cogging`); inertia of the link (`inertia`); variances of all parameters (`uncertainty`). Implements (O7), (O9) and
-//! (O14).
+//! Estimation of joint, encoder and motor parameters during motion. The parameters of the deflection come from one
+//! recursive least squares (`least_squares`); bias and friction of the motor from `bias`, cogging from `cogging`, the
+//! inertia of the link from `inertia`, the variances of all parameters from `uncertainty`.
+//!
+//! ```text
+//! (O7)  d_t = d - o - s w_l - maps - e
+//! (O9)  F_n = t/r_s - (bias + friction dir),   F = F_n (1 + loss |dir|)
+//! (O14) F_h = F + lag F'
+//! ```
+//!
+//! Symbols: d = `raw_deflection`, d_t = `tooth_deflection()`, o = `OFFSET`, s = `SKEW`, e = `flank_shift`, t/r_s =
+//! `motor_force`, dir = `direction`, F_n = `net`, F = `force`, lag = `force_lag`, F' = `rise` per interval.
 //!
 //! Estimation proceeds in learning intervals of a few control periods (`interval`). For each interval `travel` decides
-//! between rest and crossing, and `flank` determines the flank of a rest. Intervals of rest are averaged (`batch`);
-//! `consistency` accepts or rejects their mean; `trusted` keeps the parameters of long agreement. Work that can wait is
-//! done one task per period.
+//! between rest and crossing; a rest of the teeth on a flank is a dwell, whose flank `flank` determines. Intervals of a
+//! dwell are averaged (`batch`); `consistency` accepts or rejects their mean; `trusted_parameters` keeps the parameters
+//! of long agreement. Work that can wait is done one task per period.
 
 mod batch;
 pub mod bias;
 mod co_motion;
 mod cogging;
 mod consistency;
+mod dwell_decisions;
 mod flank;
 pub(crate) mod gap_variation;
 mod inertia;
@@ -30,7 +39,7 @@ pub mod uncertainty;
 use batch::{Batch, IntervalSample};
 use bias::TorqueBias;
 use cogging::Cogging;
-use consistency::{Consistency, DeviationSize, ParameterAction};
+use consistency::{Consistency, ParameterAction};
 use flank::FlankEvidence;
 use gap_variation::GapVariation;
 use inertia::LinkInertia;
@@ -40,12 +49,12 @@ use least_squares::{Innovation, LeastSquares};
 use mesh_measurement::{MeshMeasurement, saturating_difference};
 use position_errors::PositionErrors;
 use regressors::{COMPLIANCE, ContactSample, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, TRANSMISSION_ERROR};
-use thresholds::{CONSISTENCY, EstimatorThresholds};
+use thresholds::EstimatorThresholds;
 use travel::{Travel, TravelDetector};
 use trusted_parameters::TrustedParameters;
 use uncertainty::Uncertainty;
 
-use crate::gears::{Flank, sign};
+use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::contact::gap_position::GapPosition;
@@ -219,7 +228,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         }
     }
 
-    /// Resets all variances and the last rest: the output encoder has returned at another offset.
+    /// Resets all variances and the last dwell: the output encoder has returned at another offset.
     pub fn reset_variances(&mut self, tables: &ObserverTables<T>) {
         self.least_squares.reset_covariance();
         self.pending_innovation = None;
@@ -252,7 +261,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         self.probation = Self::LIMITS.probation;
     }
 
-    /// Discards the open interval and the last rest: readings have broken off.
+    /// Discards the open interval and the last dwell: readings have broken off.
     pub fn discard_interval(&mut self) {
         self.interval = Interval::new();
         self.travel = TravelDetector::new();
@@ -342,8 +351,8 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         IntervalResult { mean, mesh, deflection, flank_shift, travel, flank, error_deviation }
     }
 
-    /// Effect of unknown error maps and transmission error on the travel of the deflection. Until the half-gap is known,
-    /// the estimated transmission error is subtracted, so that it hides no crossing; afterwards it is left in.
+    /// Effect of unknown error maps and transmission error on the travel of the deflection. Until the half-gap is
+    /// known, the estimated transmission error is subtracted, so that it hides no crossing; afterwards it is left in.
     fn blur(&self, tables: &ObserverTables<T>, mesh: &[T; 2]) -> Blur<T> {
         let per_turn = tables.contact.still_per_speed;
         if self.uncertainty.half_gap_is_known {
@@ -420,60 +429,6 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         if encoder_fails { Outcome::OutputEncoderFault } else { Outcome::Nothing }
     }
 
-    /// Decides if an interval is a rest that updates the parameters, and on which flank; the force rises by `rise` [N].
-    fn dwell(
-        &mut self,
-        tables: &ObserverTables<T>,
-        interval: &IntervalResult<T>,
-        rise: T,
-        both_encoders: bool,
-    ) -> Dwell {
-        let [half_gap, _] = self.half_gap_and_compliance();
-        let known = self.uncertainty.half_gap_is_known;
-        // Teeth at rest while the motor turns are on a flank, even if no force shows which. While the transmission
-        // error could hide a crossing, this is not certain of any rest: the transmission error is estimated first.
-        let half_gap_bound = self.last_dwell.co_motion().half_gap_at_least(half_gap);
-        let rests_on_unknown_flank = is_settled(interval.travel)
-            && !known
-            && (interval.error_deviation > half_gap_bound * Self::LIMITS.hidden_crossing
-                || self.travel.distinguishes_rest(half_gap_bound));
-        // A stationary motor repeats one rounded reading under a force hidden by friction: this rest is used once on
-        // either flank.
-        let turns = interval.mean.direction.abs() > T::HALF;
-        let evidence = self.flank_evidence(interval.deflection - interval.flank_shift, interval.mean.force);
-        let loaded_flank = flank::loaded_flank(&evidence, &self.interval, &tables.learner, rise);
-        // The first millisecond of a landing is not used.
-        let confirmed_flank = loaded_flank.filter(|_| loaded_flank == self.interval.loaded_flank);
-        let known_flank = interval.flank.or(confirmed_flank);
-        self.interval.loaded_flank = loaded_flank;
-        let new = turns || known_flank.is_some() && known_flank != self.interval.updated_on;
-        if both_encoders && new && (known_flank.is_some() || rests_on_unknown_flank) {
-            Dwell::On(known_flank)
-        } else {
-            Dwell::No
-        }
-    }
-
-    /// Detects force at rest between the flanks beyond bias and stiction, and grades the distance from the flanks.
-    fn force_between_flanks(
-        &self,
-        tables: &ObserverTables<T>,
-        deflection: T,
-        travel: Travel<T>,
-    ) -> Option<DeviationSize> {
-        let known = &self.uncertainty;
-        let [half_gap, _] = self.half_gap_and_compliance();
-        let threshold = T::THREE * known.steady_force_deviation + T::TWO * self.bias.friction.abs();
-        let inside = half_gap - known.blur - tables.rounding();
-        let between = known.half_gap_is_known && deflection.abs() < inside;
-        let deviation = if half_gap - deflection.abs() < Self::LIMITS.max_variation * half_gap {
-            DeviationSize::WithinVariation
-        } else {
-            DeviationSize::BeyondVariation
-        };
-        (between && is_settled(travel) && self.interval.steady_force.abs() > threshold).then_some(deviation)
-    }
-
     /// Updates the torque bias (O16) while the gap is certainly open.
     fn update_bias(
         &mut self,
@@ -545,107 +500,6 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
             }
         };
         outcome
-    }
-
-    /// Determines the flank of a rest, by force or by the change of the deflection.
-    fn determine_flank(&mut self, tables: &ObserverTables<T>) {
-        let (regressors, deflection) = self.batch.measurement();
-        let mut flank = self.batch.flank();
-        if let Some(known_flank) = flank {
-            self.last_dwell.co_motion().confirm_flank(known_flank);
-        } else {
-            flank = self.flank_without_force(tables, &regressors, deflection);
-        }
-        self.last_dwell.store(&regressors, deflection, flank);
-        self.batch.set_flank(flank);
-    }
-
-    /// Determines the flank of a rest by the deflection. If the flank stays unknown but the teeth certainly are on a
-    /// flank, the rest updates the parameters that do not depend on the flank.
-    fn flank_without_force(
-        &mut self,
-        tables: &ObserverTables<T>,
-        regressors: &Regressors<T, P>,
-        deflection: T,
-    ) -> Option<Flank> {
-        let [half_gap, _] = self.half_gap_and_compliance();
-        let innovation = self.last_dwell.innovation(&tables.learner, &self.least_squares, regressors, deflection)?;
-        let flank = self.last_dwell.flank(&tables.learner, &innovation, regressors, half_gap, tables.levers.output);
-        if self.travel.distinguishes_rest(self.last_dwell.co_motion().half_gap_at_least(half_gap)) {
-            // Teeth also reverse inside the gap, for a moment at rest: then the force of the whole rest shows no stop.
-            // Teeth also leave a flank slowly, at rest for a while: then the steady force has decayed.
-            let force =
-                if self.last_dwell.was_on(flank) { self.interval.steady_force } else { self.interval.dwell_force };
-            let is_felt = sign::<T>(flank) * force > self.uncertainty.steady_force_deviation;
-            let flank = if is_felt { flank } else { self.last_dwell.co_motion().flank() };
-            if flank.is_some() {
-                return flank;
-            }
-        }
-        if innovation.is_within(CONSISTENCY.outlier_sigma) && self.last_dwell.co_motion().proves_contact(half_gap) {
-            self.pending_innovation = Some(innovation);
-        }
-        None
-    }
-
-    /// Accepts a rest on a flank as a measurement, or rejects it as an outlier.
-    fn check_dwell(&mut self, tables: &ObserverTables<T>) -> ParameterAction {
-        let table = &tables.learner;
-        let [half_gap, _] = self.half_gap_and_compliance();
-        let (regressors, deflection) = self.batch.measurement();
-        let relative_weight = self.batch.relative_weight(table, self.uncertainty.half_gap_is_known);
-        let weight = (table.weight * relative_weight) / self.uncertainty.dwell_deviation;
-        let innovation = self.least_squares.innovation(table, &regressors, deflection, weight);
-        let square = innovation.value * innovation.value;
-        let is_accepted = innovation.is_within(CONSISTENCY.outlier_sigma);
-        if let Some(flank) = self.batch.flank() {
-            let deviation = [square, innovation.variance].map(|normalised| normalised / (weight * weight));
-            self.gap_variation.add_dwell(&tables.counts, flank, deviation, half_gap, is_accepted);
-        }
-        if !is_accepted {
-            let excess = innovation.value.abs() / weight;
-            let deviation = if excess <= half_gap * tables.contact.known_part {
-                DeviationSize::WithinTolerance
-            } else if excess < Self::LIMITS.max_variation * half_gap {
-                DeviationSize::WithinVariation
-            } else {
-                DeviationSize::BeyondVariation
-            };
-            let action = self.consistency.reject(deviation, self.trusted.is_some());
-            self.apply_action(tables, action);
-            return action;
-        }
-        self.consistency.accept(self.batch.flank());
-        self.pending_innovation = Some(innovation);
-        ParameterAction::Keep
-    }
-
-    /// Updates the parameters with the accepted rest, if any.
-    fn update_with_dwell(&mut self, tables: &ObserverTables<T>) {
-        let Some(innovation) = self.pending_innovation.take() else { return };
-        self.errors.update_parameters(&mut self.least_squares, |least_squares| {
-            least_squares.update(&tables.learner, &innovation)
-        });
-        let Some(flank) = self.batch.flank() else { return };
-        self.uncertainty.adapt_dwell_noise(innovation.value, innovation.variance, flank);
-        if self.consistency.is_trusted() {
-            self.trusted = Some(TrustedParameters::snapshot(&self.least_squares));
-            if self.uncertainty.detect_half_gap_change() {
-                self.least_squares.inflate_half_gap(&tables.learner, Self::LIMITS.inflation);
-            }
-        }
-    }
-
-    /// Applies an action: resets the variances of the parameters concerned.
-    fn apply_action(&mut self, tables: &ObserverTables<T>, action: ParameterAction) {
-        match action {
-            ParameterAction::Keep | ParameterAction::OutputEncoderFault => {}
-            ParameterAction::InflateHalfGap => {
-                self.least_squares.inflate_half_gap(&tables.learner, Self::LIMITS.inflation)
-            }
-            ParameterAction::ResetHalfGap => self.least_squares.reset_half_gap_variance(),
-            ParameterAction::ResetAll => self.least_squares.reset_covariance(),
-        }
     }
 
     /// Updates the variances after an interval.

@@ -1,5 +1,12 @@
-//! Regressors of the deflection (O11): touching teeth, offset, skew, and encoder errors once and twice per turn. The
-//! least squares estimate their coefficients.
+//! Regressors h of the deflection. The least squares estimate their coefficients.
+//!
+//! ```text
+//! (O11) d = side c + o + κ F + s w_l + e_1 sin(mesh) + e_2 cos(mesh) + maps
+//!       maps = m_1 sin + m_2 cos + m_3 sin twice + m_4 cos twice per turn, each for motor and output
+//! ```
+//!
+//! Indices: c = `HALF_GAP`, o = `OFFSET`, κ = `COMPLIANCE`, s = `SKEW`, e_1, e_2 = `TRANSMISSION_ERROR`, maps from
+//! `PLAIN`.
 
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;

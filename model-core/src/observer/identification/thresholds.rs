@@ -1,5 +1,5 @@
-//! Thresholds of the parameter estimation. `observer learning`, `observer gap` and `observer monte_carlo` are modules of
-//! `cargo test -p host-tests --test observer`.
+//! Thresholds of the parameter estimation. `observer learning`, `observer gap` and `observer monte_carlo` are modules
+//! of `cargo test -p host-tests --test observer`.
 
 use crate::numbers::{Real, thresholds};
 
@@ -59,7 +59,7 @@ thresholds! {
         /// deviations, so that one deviation is at most a quarter of the span. The remainder is two half-gaps of 3/8
         /// each.
         proven_share: T = T::THREE_EIGHTHS,
-        /// Largest change of the deflection during a rest on one flank, over the gap [-].
+        /// Largest change of the deflection during a dwell on one flank, over the gap [-].
         max_drift: T = T::EIGHTH,
     }
 }

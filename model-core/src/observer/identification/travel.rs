@@ -57,8 +57,8 @@ impl<T: Real> TravelDetector<T> {
     }
 
     /// Judges an interval by deflection less wind-up [m], and force [N] with direction. `blur` is the deflection that
-    /// unknown error maps can cause as the motor turns in an interval [m], `compliance_uncertainty` the uncertainty of the compliance
-    /// [m/N].
+    /// unknown error maps can cause as the motor turns in an interval [m], `compliance_uncertainty` the uncertainty of
+    /// the compliance [m/N].
     pub fn step(
         &mut self,
         table: &ContactTable<T>,

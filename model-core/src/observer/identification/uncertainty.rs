@@ -1,5 +1,14 @@
-//! Variances of all estimates and the thresholds that follow from them (O13, O18, O19), updated in parts, one per
-//! interval, so that no period has to do all the work.
+//! Variances of all estimates and the thresholds that follow from them, updated in parts, one per interval, so that no
+//! period has to do all the work.
+//!
+//! ```text
+//! (O13) r' = max(1, r (1 + (v^2/var(v) - 1)/40))
+//! (O18) open:      var(X) = h^T P h + κ^2 (var(bias + friction dir) + ripple^2/2) + noise + (T rate)^2
+//! (O19) touching:  var(X) = h^T P h + κ^2 (dir^2 var(friction) + ripple^2)/2 + noise
+//! ```
+//!
+//! Symbols: r = `dwell_deviation`, v = `innovation`, var(X) = `gap_variance` (touching, open), κ^2 terms =
+//! `wind_up_variance` (open, touching), noise = `deflection_variance` of the contact table. `outputs` adds (T rate)^2.
 
 use super::bias::TorqueBias;
 use super::least_squares::LeastSquares;
@@ -62,10 +71,10 @@ pub struct Uncertainty<T: Real> {
     pub flanks_swap: bool,
     /// True if the last interval was in settled contact.
     pub settled: bool,
-    /// Standard deviation of a rest's noise over the standard deviation of the encoders' noise, at least 1 (O13) [-].
+    /// Standard deviation of a dwell's noise over the standard deviation of the encoders' noise, at least 1 (O13) [-].
     /// Effects outside the model count as noise.
     pub dwell_deviation: T,
-    /// Mean normalised innovation of rests, positive if the rests show a wider gap [-].
+    /// Mean normalised innovation of dwells, positive if the dwells show a wider gap [-].
     half_gap_error: T,
     /// Part that is updated next.
     next_part: u8,
@@ -144,10 +153,10 @@ impl<T: Real> Uncertainty<T> {
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
 
-    /// Updates the noise of rests and the error of the half-gap with an accepted rest on a flank: its innovation v and
-    /// the variance of v.
+    /// Updates the noise of dwells and the error of the half-gap with an accepted dwell on a flank: its innovation v
+    /// and the variance of v.
     ///
-    /// With n = v^2 / variance, the standard deviation r of a rest's noise follows r' = max(1, r (1 + share (n - 1) /
+    /// With n = v^2 / variance, the standard deviation r of a dwell's noise follows r' = max(1, r (1 + share (n - 1) /
     /// 2)) (O13), so that n is 1 in the mean (covariance matching: R. K. Mehra, *On the identification of variances and
     /// adaptive Kalman filtering*, IEEE Transactions on Automatic Control 15(2), 1970). Outliers leave r unchanged: the
     /// joint has changed, or its encoder fails.
@@ -160,7 +169,7 @@ impl<T: Real> Uncertainty<T> {
         self.half_gap_error += Self::LIMITS.dwell_weight * (wider - self.half_gap_error);
     }
 
-    /// Returns true once the mean innovation of rests shows a changed half-gap; the mean then begins anew. Offset
+    /// Returns true once the mean innovation of dwells shows a changed half-gap; the mean then begins anew. Offset
     /// errors cancel between the flanks.
     pub fn detect_half_gap_change(&mut self) -> bool {
         let changed = self.half_gap_error.abs() > Self::LIMITS.changed_half_gap;
@@ -254,7 +263,7 @@ impl<T: Real> Uncertainty<T> {
         self.flanks_swap = error > half_gap;
         // The planets' errors differ: some teeth meet earlier by half of the error on average, and noise hides the
         // moment.
-        let (first, most) = (self.blur + T::HALF * error, Self::LIMITS.near_share * half_gap);
-        self.near = if first < most { first } else { most };
+        let (reached, largest) = (self.blur + T::HALF * error, Self::LIMITS.near_share * half_gap);
+        self.near = if reached < largest { reached } else { largest };
     }
 }

@@ -1,6 +1,12 @@
-//! Integer counts of both shafts, exact over any number of turns and over wrap-around, and their difference (O1): motor
-//! less ratio times output. D = `difference`, n_m C_o q = motor counts times `motor_weight`, n_o C_m p = output counts
-//! times `output_weight`, both without common divisors. Angles beyond a turn never become floating point here.
+//! Integer counts of both shafts, exact over any number of turns and over wrap-around, and their difference, motor less
+//! ratio times output. Angles beyond a turn never become floating point here.
+//!
+//! ```text
+//! (O1)  D = n_m C_o q - n_o C_m p,   unit 1/(C_m C_o q) motor turn
+//! ```
+//!
+//! Symbols: D = `difference`, n_m = counts of `motor`, n_o = counts of `output`, C_o q = `motor_weight`, C_m p =
+//! `output_weight`, both weights without common divisors.
 
 use super::thresholds::COUNTS;
 use crate::numbers::Real;
@@ -251,7 +257,8 @@ impl Counts {
     }
 
     /// Advances an implied output, and the travel of an excluded motor encoder. `by` is the motor's travel in units of
-    /// the difference, `output_travel` the measured output's in counts. Returns the travel of the output in use [counts].
+    /// the difference, `output_travel` the measured output's in counts. Returns the travel of the output in use
+    /// [counts].
     #[cold]
     fn advance_output_in_use<T: Real>(
         &mut self,
@@ -284,12 +291,12 @@ impl Counts {
     /// position implied by the output or, without an output encoder, to the motor's last position.
     pub fn resolve_motor_position<T: Real>(&mut self, table: &CountTable<T>) {
         let Some(Suspicion { difference, travel }) = self.suspicion else { return };
-        let beyond = if self.implied.is_some() { travel } else { self.difference.wrapping_sub(difference) };
-        let back = nearest_range_multiple(beyond, &table.motor, table.motor_weight).wrapping_neg();
-        self.motor.turn(&table.motor, back);
-        let back = back.wrapping_mul(table.motor_weight);
-        self.difference = self.difference.wrapping_add(back);
-        self.suspicion = Some(Suspicion { difference, travel: travel.wrapping_add(back) });
+        let offset = if self.implied.is_some() { travel } else { self.difference.wrapping_sub(difference) };
+        let correction = nearest_range_multiple(offset, &table.motor, table.motor_weight).wrapping_neg();
+        self.motor.turn(&table.motor, correction);
+        let correction = correction.wrapping_mul(table.motor_weight);
+        self.difference = self.difference.wrapping_add(correction);
+        self.suspicion = Some(Suspicion { difference, travel: travel.wrapping_add(correction) });
     }
 
     /// Readmits the motor encoder at its found position. An encoder that slipped by `slipped` units of the difference
@@ -320,10 +327,10 @@ impl Counts {
     fn follow_output_jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
         self.output.advance(&table.output, by.wrapping_neg());
         let (_, implied) = *self.implied.get_or_insert((self.output, self.difference));
-        let beyond =
+        let offset =
             i64::from(by).wrapping_mul(table.output_weight).wrapping_sub(self.difference).wrapping_add(implied);
         let travel =
-            i64::from(by).wrapping_sub(nearest_range_multiple(beyond, &table.output, table.output_weight)) as i32;
+            i64::from(by).wrapping_sub(nearest_range_multiple(offset, &table.output, table.output_weight)) as i32;
         self.output.advance(&table.output, travel);
         travel
     }
@@ -355,9 +362,9 @@ impl Counts {
     pub fn set_reference<T: Real>(&mut self, reference: i64, table: &CountTable<T>) {
         self.has_reference = true;
         if self.output.began {
-            let beyond = floor_mod(self.start.wrapping_sub(reference), table.modulus);
-            let beyond = if beyond > half(table.modulus) { beyond - table.modulus } else { beyond };
-            self.difference = self.difference.wrapping_add(beyond);
+            let offset = floor_mod(self.start.wrapping_sub(reference), table.modulus);
+            let offset = if offset > half(table.modulus) { offset - table.modulus } else { offset };
+            self.difference = self.difference.wrapping_add(offset);
         }
         self.start = reference;
     }

@@ -27,8 +27,8 @@ pub enum SampleAge {
 pub struct Latency {
     /// Age of the last reading in [`AGE_PARTS`] of a period; zero for a fresh reading.
     age: u8,
-    /// Excess of late periods over punctual ones; above [`LATENCY.tolerated_late_periods`], punctual periods left until recovery plus
-    /// `LATENCY.tolerated_late_periods`.
+    /// Excess of late periods over punctual ones; above [`LATENCY.tolerated_late_periods`], punctual periods left until
+    /// recovery plus `LATENCY.tolerated_late_periods`.
     lateness: u8,
 }
 

@@ -1,5 +1,5 @@
-//! Thresholds of the sensors. `observer late` and `wild motor_encoder` are modules of `cargo test -p host-tests --test observer` and
-//! `--test wild`.
+//! Thresholds of the sensors. `observer late` and `wild motor_encoder` are modules of `cargo test -p host-tests --test
+//! observer` and `--test wild`.
 
 use crate::numbers::thresholds;
 

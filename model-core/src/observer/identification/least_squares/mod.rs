@@ -1,9 +1,13 @@
-//! Recursive least squares (O12) for all parameters that contact shows: half-gap, offset, compliance, skew,
-//! transmission error and, with `P` = [`MAPPED`](super::regressors::MAPPED), the error maps.
+//! Recursive least squares for all parameters that contact shows: half-gap, offset, compliance, skew, transmission
+//! error and, with `P` = [`MAPPED`](super::regressors::MAPPED), the error maps.
 //!
-//! Model (O11): deflection = side * half-gap + offset + compliance * force + skew * speed + maps. The covariance is
-//! kept in units of the initial standard deviations and as U D U^T (Bierman), so that it stays positive in single
-//! precision.
+//! ```text
+//! (O12) v = d - h^T x,   var(v) = 1 + h^T P h,   x += P h v/var(v),   P -= P h h^T P/var(v)
+//! ```
+//!
+//! Symbols: x = `values`, h = `regressors` (O11), v = `Innovation::value`, var(v) = `Innovation::variance`, both in
+//! standard deviations of one deflection's noise; U^T h = `projected`. P = U D U^T (Bierman) is kept as `factors`, in
+//! units of the initial standard deviations, so that P stays positive in single precision.
 
 #[cfg(test)]
 mod tests;
@@ -132,8 +136,9 @@ impl<T: Real, const P: usize> LeastSquares<T, P> {
         let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;
         let parameters = self.values.iter().zip(&table.mean).zip(&table.deviation).enumerate();
         let values = parameters.map(|(index, ((value, mean), deviation))| {
-            let most = if index == OFFSET { turns } else { T::from_i32(LEAST_SQUARES.max_deviation) * *deviation };
-            (*value - *mean).abs() <= most
+            let max_distance =
+                if index == OFFSET { turns } else { T::from_i32(LEAST_SQUARES.max_deviation) * *deviation };
+            (*value - *mean).abs() <= max_distance
         });
         let factors = self.factors.iter().enumerate().map(|(index, column)| {
             let (above, rest) = column.split_at_checked(index).unwrap_or_default();
@@ -200,8 +205,8 @@ impl<T: Real, const P: usize> LeastSquares<T, P> {
             *value += *deviation * (*gain * step);
             if index != OFFSET {
                 let mean = table.mean.get(index).copied().unwrap_or(T::ZERO);
-                let most = T::from_i32(LEAST_SQUARES.max_deviation) * *deviation;
-                *value = clamp(*value, mean - most, mean + most);
+                let max_distance = T::from_i32(LEAST_SQUARES.max_deviation) * *deviation;
+                *value = clamp(*value, mean - max_distance, mean + max_distance);
             }
         }
         self.limit_half_gap();

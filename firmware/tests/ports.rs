@@ -16,7 +16,8 @@ use link::framing::{Receiver, encode, sealed, unsealed};
 use link::messages::{Accepted, FromBoard, Schedule, ToBoard};
 use model_core::compensation::{Command, Motion, Position};
 use model_core::controller::{Answer, Controller};
-use model_core::observer::{Progress, Reading, Samples};
+use model_core::observer::{Reading, Samples};
+use model_core::width_probe::ProbeProgress;
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
@@ -70,7 +71,7 @@ fn a_probe_pushes_through_every_port_that_has_a_controller_behind_it() {
     let pushing = direct.iter().position(|answer| answer.shaped.torque != 0.0).expect("it pushes");
     // After the first period the probe needs time to observe the joint.
     assert_eq!(pushing as u32, settle + 1);
-    assert!(direct.iter().all(|answer| answer.probed == Some(Progress::Running)));
+    assert!(direct.iter().all(|answer| answer.probed == Some(ProbeProgress::Running)));
     let mut memory = SharedMemory::new();
     let (mut host, mut guest) = memory.split();
     let mut behind = controller();

@@ -10,9 +10,9 @@ use model_core::controller::Answer;
 use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
 use model_core::observer::{
-    Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Reading, Refusal, Samples, Shaft, Source,
-    TorqueResponse,
+    Estimate, Estimates, MotorFault, Notices, OutputFault, Reading, Samples, Shaft, Source, TorqueResponse,
 };
+use model_core::width_probe::{ProbeProgress, ProbeRefusal};
 use parameters::ContactState;
 
 const MOTION: Motion<f32> =
@@ -81,11 +81,11 @@ fn samples_and_set_points_round_trip() {
 }
 
 /// No probe, and all results of a probe.
-fn probes() -> Vec<Option<Progress<f32>>> {
-    use Refusal::*;
-    let refused = [NotAtRest, Loaded, NotHeld, Stuck, Unsteady, BadSamples].map(Progress::Refused);
-    let done = Progress::Done(Estimate { value: 40e-6, variance: 1e-12, valid: true });
-    [Progress::Running, done].into_iter().chain(refused).map(Some).chain([None]).collect()
+fn probes() -> Vec<Option<ProbeProgress<f32>>> {
+    use ProbeRefusal::*;
+    let refused = [NotAtRest, Loaded, NotHeld, Stuck, Unsteady, BadSamples].map(ProbeProgress::Refused);
+    let done = ProbeProgress::Done(Estimate { value: 40e-6, variance: 1e-12, valid: true });
+    [ProbeProgress::Running, done].into_iter().chain(refused).map(Some).chain([None]).collect()
 }
 
 #[test]

@@ -26,6 +26,7 @@
 //! - [`gears`]: the joint's fixed step ([`gears::Model`]);
 //! - [`observer`]: estimates the gap coordinate, contact and torques from encoder counts and motor torque;
 //! - [`wiring`]: checks signs, counts, ratio, torque, rate and clock against the tables before control starts;
+//! - [`width_probe`]: measures the backlash with a held load, without an output encoder;
 //! - [`compensation`]: computes a motor torque that removes the lost motion, from the estimates and a set-point;
 //! - [`virtual_joint`]: simulates gears with motor, friction and encoders, to test a controller;
 //! - [`controller`]: combines observer and compensation.
@@ -60,6 +61,7 @@ pub mod gears;
 pub mod numbers;
 pub mod observer;
 pub mod virtual_joint;
+pub mod width_probe;
 pub mod wiring;
 
 pub use compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};

@@ -8,8 +8,9 @@ use model_core::gears::{Kinematics, Tables, design::design};
 use model_core::numbers::random::splitmix64;
 use model_core::observer::design::design_usual_probe;
 use model_core::observer::design::{design_observer, observer_settings};
-use model_core::observer::{OutputFault, Probe, Progress, Refusal, Samples, Source, TorqueResponse};
+use model_core::observer::{OutputFault, Samples, Source, TorqueResponse};
 use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 use parameters::{JointParameters, Surroundings};
 
 const PRESETS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
@@ -47,7 +48,7 @@ struct Outcome {
     /// How far the link had gone at most [rad].
     furthest: f64,
     /// What a width probe says that begins then.
-    probe: Option<Progress<f32>>,
+    probe: Option<ProbeProgress<f32>>,
 }
 
 fn loops(name: &str, wiring: Wiring, task: Task, seconds: f64) -> Outcome {
@@ -160,7 +161,7 @@ fn a_reversed_loop_loses_its_torque() {
                 let (time, travel) = outcome.reversed.unwrap_or((f64::INFINITY, f64::INFINITY));
                 assert!(time < 0.5 && travel < 1.2, "{name} {wiring:?} {task:?}: {outcome:?}");
                 assert_eq!((outcome.torque_after, outcome.response), (0.0, TorqueResponse::Reversed), "{name}");
-                let refused = outcome.probe.is_none_or(|said| said == Progress::Refused(Refusal::BadSamples));
+                let refused = outcome.probe.is_none_or(|said| said == ProbeProgress::Refused(ProbeRefusal::BadSamples));
                 assert!(refused, "{name}: {outcome:?}");
             }
         }

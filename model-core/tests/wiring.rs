@@ -8,7 +8,7 @@ use model_core::observer::{MAPPED, Observer, Reading, Samples};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint, design::design_surroundings};
 use model_core::wiring::WiringTable;
 use model_core::wiring::design::design_wiring;
-use model_core::wiring::{Verdict, Wiring, WiringCheck, WiringItem, WiringJudge, WiringProgress, WiringRefusal};
+use model_core::wiring::{Wiring, WiringCheck, WiringItem, WiringJudge, WiringProgress, WiringRefusal, WiringVerdict};
 use parameters::{AbsoluteEncoder, JointParameters, Surroundings};
 
 const PRESETS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
@@ -281,7 +281,7 @@ fn outcome(told: &Joint, is: Miswiring, seed: u64) -> (Outcome, f32) {
 }
 
 /// Items that are wrong or suspect.
-fn named(wiring: &Wiring<f32>) -> Vec<(WiringItem, Verdict<f32>)> {
+fn named(wiring: &Wiring<f32>) -> Vec<(WiringItem, WiringVerdict<f32>)> {
     wiring.iter().filter(|(_, verdict)| verdict.is_bad()).collect()
 }
 
@@ -302,10 +302,10 @@ fn is_named(told: &Joint, is: Miswiring, seed: u64, label: &str) -> bool {
     let right = may_end
         && match is.item() {
             None => {
-                let seen = |(_, verdict)| verdict == Verdict::Right;
+                let seen = |(_, verdict)| verdict == WiringVerdict::Right;
                 outcome.wiring.iter().all(seen)
             }
-            Some(item) => matches!(found.as_slice(), [(only, Verdict::Wrong(_))] if *only == item),
+            Some(item) => matches!(found.as_slice(), [(only, WiringVerdict::Wrong(_))] if *only == item),
         };
     if !right || std::env::var_os("WIRING_PRINTED").is_some() {
         println!(
@@ -400,8 +400,12 @@ fn a_steady_torque_tells_neither_its_direction_nor_its_scale() {
         judge.step(&Samples { time, motor, output: Some(output), torque: 0.1 });
     }
     let wiring = judge.wiring();
-    assert_eq!(wiring.of(WiringItem::Ratio), Verdict::Right);
+    assert_eq!(wiring.verdict(WiringItem::Ratio), WiringVerdict::Right);
     for item in [WiringItem::TorqueDirection, WiringItem::TorqueScale] {
-        assert!(matches!(wiring.of(item), Verdict::NotSeen | Verdict::Right), "{item:?}: {:?}", wiring.of(item));
+        assert!(
+            matches!(wiring.verdict(item), WiringVerdict::NotSeen | WiringVerdict::Right),
+            "{item:?}: {:?}",
+            wiring.verdict(item)
+        );
     }
 }

@@ -3,7 +3,7 @@
 
 use core::mem::MaybeUninit;
 
-use model_core::observer::{Probe, Progress, Refusal};
+use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 
 use table_blob::Blob;
 
@@ -108,22 +108,22 @@ pub unsafe extern "C" fn joint_probe_step(
         let Waiting { probe, wait } = &mut object.value;
         let (motor_torque_Nm, progress) = if *wait > 0 {
             *wait -= 1;
-            (0.0, Progress::Running)
+            (0.0, ProbeProgress::Running)
         } else {
             probe.step(seen.value.estimates())
         };
         let none = JointEstimate { value: 0.0, variance: 0.0, valid: 0 };
         let (progress, half_backlash_m) = match progress {
-            Progress::Running => (JointProgress::Running, none),
-            Progress::Done(width) => (JointProgress::Done, width.into()),
-            Progress::Refused(refusal) => {
+            ProbeProgress::Running => (JointProgress::Running, none),
+            ProbeProgress::Done(width) => (JointProgress::Done, width.into()),
+            ProbeProgress::Refused(refusal) => {
                 let why = match refusal {
-                    Refusal::NotAtRest => JointProgress::NotAtRest,
-                    Refusal::Loaded => JointProgress::Loaded,
-                    Refusal::NotHeld => JointProgress::NotHeld,
-                    Refusal::Stuck => JointProgress::Stuck,
-                    Refusal::Unsteady => JointProgress::Unsteady,
-                    Refusal::BadSamples => JointProgress::BadSamples,
+                    ProbeRefusal::NotAtRest => JointProgress::NotAtRest,
+                    ProbeRefusal::Loaded => JointProgress::Loaded,
+                    ProbeRefusal::NotHeld => JointProgress::NotHeld,
+                    ProbeRefusal::Stuck => JointProgress::Stuck,
+                    ProbeRefusal::Unsteady => JointProgress::Unsteady,
+                    ProbeRefusal::BadSamples => JointProgress::BadSamples,
                 };
                 (why, none)
             }

@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 
 use core::ffi::{CStr, c_char};
 
-use model_core::wiring::{Verdict, Wiring, WiringCheck, WiringProgress, WiringRefusal};
+use model_core::wiring::{Wiring, WiringCheck, WiringProgress, WiringRefusal, WiringVerdict};
 
 use table_blob::Blob;
 
@@ -132,10 +132,10 @@ impl From<&Wiring<f32>> for JointWiringVerdicts {
         };
         for (((_, verdict), place), found) in of.iter().zip(&mut all.verdicts).zip(&mut all.found) {
             (*place, *found) = match verdict {
-                Verdict::NotSeen => (JointVerdict::NotSeen, 0.0),
-                Verdict::Right => (JointVerdict::Right, 0.0),
-                Verdict::Wrong(value) => (JointVerdict::Wrong, value),
-                Verdict::Suspect(value) => (JointVerdict::Suspect, value),
+                WiringVerdict::NotSeen => (JointVerdict::NotSeen, 0.0),
+                WiringVerdict::Right => (JointVerdict::Right, 0.0),
+                WiringVerdict::Wrong(value) => (JointVerdict::Wrong, value),
+                WiringVerdict::Suspect(value) => (JointVerdict::Suspect, value),
             };
             all.bad += u32::from(verdict.is_bad());
         }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 const PAGE: &str = include_str!("../../../docs/theory/observer.md");
-const FLANK: &str = include_str!("../../../model-core/src/observer/learnt/flank.rs");
+const FLANK: &str = include_str!("../../../model-core/src/observer/identification/flank.rs");
 const OUTPUT_FAULTS: &str = include_str!("../../../model-core/src/observer/health/output_faults.rs");
 
 const MOTOR_FAULTS: &str = include_str!("../../../model-core/src/observer/health/motor_faults.rs");

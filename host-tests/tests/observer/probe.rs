@@ -2,7 +2,8 @@
 
 use host_tests::tolerance::observer::PROBED_WIDTH;
 use model_core::observer::design::{ObserverSettings, design_observer, design_probe};
-use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeTable, Progress, Refusal};
+use model_core::observer::{MAPPED, Observer, ObserverTables, ProbeTable};
+use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 use reference::closed_loop::{Controller, SetPoint};
 use reference::drive_train::{Disturbance, Measurement};
 use scenario::rig::{ActiveController, Period, PeriodSample, Rig, RunError};
@@ -20,7 +21,7 @@ struct ProbeController<'t> {
     observer: Observer<'t, f32, MAPPED>,
     probe: Probe<'t, f32>,
     home: Measurement,
-    progress: Progress<f32>,
+    progress: ProbeProgress<f32>,
     command: f64,
 }
 
@@ -34,10 +35,10 @@ impl Controller for ProbeController<'_> {
             ..PeriodSample::default()
         };
         let estimates = *self.observer.step(&samples(self.settings, &moment, period));
-        if period >= SETTLING_PERIODS && self.progress == Progress::Running {
+        if period >= SETTLING_PERIODS && self.progress == ProbeProgress::Running {
             let (torque, progress) = self.probe.step(&estimates);
             (self.command, self.progress) = (f64::from(torque), progress);
-            assert!(progress == Progress::Running || torque == 0.0, "a probe ends without a torque");
+            assert!(progress == ProbeProgress::Running || torque == 0.0, "a probe ends without a torque");
         }
         self.command
     }
@@ -45,7 +46,7 @@ impl Controller for ProbeController<'_> {
 
 /// Result of a probe on Q1 without an output encoder, with the load held by dry friction `holding` [N m], and the largest force on the
 /// teeth [N].
-fn run_probe(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (Progress<f32>, f64) {
+fn run_probe(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (ProbeProgress<f32>, f64) {
     let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.7);
     experiment.setup.train.surroundings.load_friction.coulomb = holding;
     experiment.setup.train.surroundings.gravity_torque = 0.0;
@@ -59,7 +60,7 @@ fn run_probe(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque
         observer: Observer::new(&tables),
         probe: Probe::new(&table),
         home: rig.home(),
-        progress: Progress::Running,
+        progress: ProbeProgress::Running,
         command: 0.0,
     };
     let mut peak_force = 0.0_f64;
@@ -70,7 +71,7 @@ fn run_probe(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque
     let mut set_points = SetPointSource::of_positions(experiment.setup.motion.clone());
     rig.run(&mut ActiveController::from_rival(Box::new(&mut controller)), &mut set_points, &mut watch)
         .expect("it runs");
-    assert!(controller.progress != Progress::Running, "a probe ends within half a second");
+    assert!(controller.progress != ProbeProgress::Running, "a probe ends within half a second");
     (controller.progress, peak_force)
 }
 
@@ -79,7 +80,7 @@ fn run_probe(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque
 fn held_load_gives_the_width() {
     for (seed, half_backlash) in [(61, 20e-6), (62, 40e-6), (63, 80e-6)] {
         let (progress, peak_force) = run_probe(half_backlash, seed, 50.0, 0.0, 0.5);
-        let Progress::Done(width) = progress else { panic!("no width: {progress:?}") };
+        let ProbeProgress::Done(width) = progress else { panic!("no width: {progress:?}") };
         println!("{half_backlash}: {width:?}, at most {peak_force} N");
         PROBED_WIDTH.check(f64::from(width.value) / half_backlash - 1.0);
         assert!(peak_force < 300.0, "{peak_force} N is no gentle landing");
@@ -89,9 +90,9 @@ fn held_load_gives_the_width() {
 /// A free or driven load ends the probe with a refusal.
 #[test]
 fn free_or_driven_load_is_refused() {
-    assert_eq!(run_probe(40e-6, 64, 0.05, 0.0, 0.5).0, Progress::Refused(Refusal::NotHeld));
+    assert_eq!(run_probe(40e-6, 64, 0.05, 0.0, 0.5).0, ProbeProgress::Refused(ProbeRefusal::NotHeld));
     let pushed = run_probe(40e-6, 65, 0.0, 4.0, 0.5).0;
-    assert!(matches!(pushed, Progress::Refused(_)), "{pushed:?}");
+    assert!(matches!(pushed, ProbeProgress::Refused(_)), "{pushed:?}");
 }
 
 /// The design rejects a probe torque too small against friction.

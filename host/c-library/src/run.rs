@@ -4,8 +4,9 @@ use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Po
 use model_core::controller::Controller;
 use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
-use model_core::observer::{MAPPED, Observer, Progress, Source};
+use model_core::observer::{MAPPED, Observer, Source};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+use model_core::width_probe::ProbeProgress;
 use model_core::wiring::{WiringCheck, WiringProgress};
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
@@ -145,7 +146,7 @@ pub fn probe_digest(words: &[u64], periods: u32) -> Outcome<u64> {
     for _ in 0..periods {
         let answer = controller.probe(&joint.samples());
         let width = match answer.probed {
-            Some(Progress::Done(width)) => width.value,
+            Some(ProbeProgress::Done(width)) => width.value,
             _ => 0.0,
         };
         running = [answer.shaped.torque, width].iter().fold(running, |all, value| chain(all, value.to_bits().into()));

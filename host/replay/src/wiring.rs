@@ -4,7 +4,7 @@
 use model_core::observer::Samples;
 use model_core::observer::design::ObserverSettings;
 use model_core::wiring::design::design_wiring;
-use model_core::wiring::{Verdict, WiringItem, WiringJudge};
+use model_core::wiring::{WiringItem, WiringJudge, WiringVerdict};
 use parameters::JointParameters;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
@@ -49,12 +49,12 @@ pub fn check(
         let Samples { time, motor, output, torque } = samples.at(index);
         judge.step(&Samples { time, motor, output, torque: torque.into() });
     }
-    let finding = |(item, verdict): (WiringItem, Verdict<f64>)| {
+    let finding = |(item, verdict): (WiringItem, WiringVerdict<f64>)| {
         let (word, found) = match verdict {
-            Verdict::NotSeen => ("not_seen", None),
-            Verdict::Right => ("right", None),
-            Verdict::Wrong(found) => ("wrong", Some(found)),
-            Verdict::Suspect(found) => ("suspect", Some(found)),
+            WiringVerdict::NotSeen => ("not_seen", None),
+            WiringVerdict::Right => ("right", None),
+            WiringVerdict::Wrong(found) => ("wrong", Some(found)),
+            WiringVerdict::Suspect(found) => ("suspect", Some(found)),
         };
         let help = verdict.is_bad().then(|| item.help().to_owned());
         WiringFinding { item: item.name().to_owned(), verdict: word.to_owned(), found, help }

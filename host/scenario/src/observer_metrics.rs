@@ -1,8 +1,8 @@
 //! Metrics of the observer: estimates against the truth. Metrics of the motion are in `values`.
 
 use model_core::gears::Kinematics;
-use model_core::observer::Progress;
 use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::width_probe::ProbeProgress;
 
 use super::case::Case;
 use super::file::{Fault, TestFile, fault_is_active};
@@ -103,11 +103,11 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
 /// Result of the width probe, if a probe ended.
 fn probe_metrics(history: &RunHistory) -> Vec<(&'static str, f64)> {
     let times = || history.run.samples.iter().zip(&history.observer_outputs);
-    let ended = times().find(|(_, observed)| !matches!(observed.probed, None | Some(Progress::Running)));
+    let ended = times().find(|(_, observed)| !matches!(observed.probed, None | Some(ProbeProgress::Running)));
     let (Some((sample, observed)), Some(truth)) = (ended, history.truths.last()) else { return Vec::new() };
     let first = times().find(|(sample, _)| sample.command != 0.0).map_or(sample.time, |(sample, _)| sample.time);
     let mut list = vec![("probe_time", 1e3 * (sample.time - first)), ("probe_refused", 1.0)];
-    if let Some(Progress::Done(width)) = observed.probed {
+    if let Some(ProbeProgress::Done(width)) = observed.probed {
         list[1].1 = 0.0;
         list.push(("probe_error", 100.0 * (f64::from(width.value) / truth.half_backlash - 1.0).abs()));
     }

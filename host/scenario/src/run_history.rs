@@ -2,7 +2,8 @@
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
-use model_core::observer::{Memory, Progress, Refusal, Samples, Source, TorqueResponse};
+use model_core::observer::{Memory, Samples, Source, TorqueResponse};
+use model_core::width_probe::{ProbeProgress, ProbeRefusal};
 use reference::closed_loop::{Motion, Run, Sample, SetPoint};
 
 use super::controller_log::ControllerPeriod;
@@ -101,7 +102,7 @@ pub struct ObserverOutput {
     /// Validity of the other outputs.
     pub validity: Validity,
     /// State of the width probe, if there is one.
-    pub probed: Option<Progress<f32>>,
+    pub probed: Option<ProbeProgress<f32>>,
 }
 
 /// Validity of an observer's outputs, except the gap coordinate.
@@ -137,9 +138,9 @@ impl RunHistory {
     }
 
     /// Reason why the width probe refused, if it did.
-    pub fn refusal(&self) -> Option<Refusal> {
+    pub fn refusal(&self) -> Option<ProbeRefusal> {
         match self.observer_outputs.last()?.probed {
-            Some(Progress::Refused(refusal)) => Some(refusal),
+            Some(ProbeProgress::Refused(refusal)) => Some(refusal),
             _ => None,
         }
     }

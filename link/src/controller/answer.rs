@@ -4,9 +4,8 @@
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
 use model_core::gears::{Flank, sign};
-use model_core::observer::{
-    Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Refusal, Shaft, Source, TorqueResponse,
-};
+use model_core::observer::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
+use model_core::width_probe::{ProbeProgress, ProbeRefusal};
 use parameters::ContactState;
 use serde::{Deserialize, Serialize};
 
@@ -38,28 +37,28 @@ pub enum WireProbed {
     Refused(u8),
 }
 
-impl From<Progress<f32>> for WireProbed {
-    fn from(progress: Progress<f32>) -> Self {
+impl From<ProbeProgress<f32>> for WireProbed {
+    fn from(progress: ProbeProgress<f32>) -> Self {
         match progress {
-            Progress::Running => Self::Running,
-            Progress::Done(width) => Self::Done(estimate(width)),
-            Progress::Refused(refusal) => Self::Refused(refusal as u8),
+            ProbeProgress::Running => Self::Running,
+            ProbeProgress::Done(width) => Self::Done(estimate(width)),
+            ProbeProgress::Refused(refusal) => Self::Refused(refusal as u8),
         }
     }
 }
 
-impl From<WireProbed> for Progress<f32> {
+impl From<WireProbed> for ProbeProgress<f32> {
     fn from(wire: WireProbed) -> Self {
         match wire {
             WireProbed::Running => Self::Running,
             WireProbed::Done(width) => Self::Done(estimated(width)),
             WireProbed::Refused(refusal) => Self::Refused(match refusal {
-                0 => Refusal::NotAtRest,
-                1 => Refusal::Loaded,
-                2 => Refusal::NotHeld,
-                3 => Refusal::Stuck,
-                4 => Refusal::Unsteady,
-                _ => Refusal::BadSamples,
+                0 => ProbeRefusal::NotAtRest,
+                1 => ProbeRefusal::Loaded,
+                2 => ProbeRefusal::NotHeld,
+                3 => ProbeRefusal::Stuck,
+                4 => ProbeRefusal::Unsteady,
+                _ => ProbeRefusal::BadSamples,
             }),
         }
     }
@@ -264,7 +263,7 @@ impl From<WireEstimates> for Estimates<f32> {
 impl Answered {
     /// Returns the answer, if it contains the estimates.
     pub fn answer(&self) -> Option<Answer<f32>> {
-        let probed = self.probed.map(Progress::from);
+        let probed = self.probed.map(ProbeProgress::from);
         Some(Answer { estimates: self.estimates?.into(), shaped: self.shaped.into(), probed })
     }
 }

@@ -59,7 +59,7 @@ impl<T: Real> Brakes<T> {
         if total <= T::ZERO || !total.is_finite() {
             return T::ZERO;
         }
-        let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
+        let (gain_even, gain_friction) = (to_even / total, to_friction / total);
         let innovation = torque - self.even - self.friction * direction;
         self.even += gain_even * innovation;
         self.friction = clamp(self.friction + gain_friction * innovation, T::ZERO, most_friction);

@@ -98,7 +98,7 @@ impl<T: Real> Braking<T> {
         if situation.open {
             -load.free() * tables.body.inverse_load_inertia
         } else {
-            (torque - load.free()).over(self.inertia)
+            (torque - load.free()) / self.inertia
         }
     }
 
@@ -123,9 +123,9 @@ impl<T: Real> Braking<T> {
         if needed <= Self::LINEAR * against_error || needed <= left && !unmatched {
             return None;
         }
-        let most = against.over(self.inertia);
+        let most = against / self.inertia;
         let beside = if error < T::ZERO {
-            self.towards(against_return.over(self.inertia), error, acceleration)
+            self.towards(against_return / self.inertia, error, acceleration)
         } else if unmatched {
             Approach { closing: self.rate * error, acceleration }
         } else {
@@ -147,7 +147,7 @@ impl<T: Real> Braking<T> {
     ) -> T {
         let rate = lag.rate + time * lag.acceleration;
         let error = lag.error + time * (lag.rate + T::HALF * time * lag.acceleration);
-        let growth = time.over(tables.crossing.lead) * (course.ahead - course.acceleration);
+        let growth = (time / tables.crossing.lead) * (course.ahead - course.acceleration);
         let course = Course {
             speed: course.speed + time * (course.acceleration + T::HALF * growth),
             acceleration: course.acceleration + growth,
@@ -165,7 +165,7 @@ impl<T: Real> Braking<T> {
     /// Approach to a set-point that moves and brakes: towards the place where the set-point will stop, if it stops
     /// first or brakes harder than the link can; otherwise `beside`.
     fn or_to_rest(&self, beside: Approach<T>, most: T, error: T, speed: T, braked: T) -> Approach<T> {
-        let stands_in = speed.over(braked);
+        let stands_in = speed / braked;
         let to_rest = self.towards(most, error + T::HALF * speed * stands_in, T::ZERO);
         let to_rest = Approach { closing: to_rest.closing - speed, ..to_rest };
         let stands_first = if most > braked {
@@ -179,14 +179,14 @@ impl<T: Real> Braking<T> {
     /// Approach to an accelerated place at the distance `way`. Near the knee the linear law takes over, which feeds
     /// forward the acceleration of the place.
     fn towards(&self, braking: T, way: T, acceleration: T) -> Approach<T> {
-        let knee = braking.over(self.rate * self.rate);
+        let knee = braking / (self.rate * self.rate);
         let size = way.abs();
         if size <= knee {
             return Approach { closing: self.rate * way, acceleration };
         }
         let speed = (T::TWO * braking * (size - T::HALF * knee)).square_root();
         let (speed, braking) = if way < T::ZERO { (-speed, braking) } else { (speed, -braking) };
-        let linear = knee.over(size);
+        let linear = knee / size;
         Approach { closing: speed, acceleration: acceleration + (T::ONE - linear) * braking }
     }
 }

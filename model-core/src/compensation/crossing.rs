@@ -39,7 +39,7 @@ impl<T: Real> Crossing<T> {
     /// Crossing of a distance at a speed, without a bound of the duration. `ramp_per_speed` is the duration of a ramp
     /// per unit of speed.
     pub fn at(speed: T, way: T, ramp_per_speed: T, shortest_ramp: T) -> Self {
-        let along = way.over(speed);
+        let along = way / speed;
         let steepest = ramp_per_speed * speed;
         // If the gap ends before the speed is reached, the path consists of two ramps.
         let ramp = if steepest > along { (ramp_per_speed * way).square_root() } else { steepest };

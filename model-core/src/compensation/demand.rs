@@ -139,7 +139,7 @@ impl<T: Real> Demand<T> {
         self.asked = (designed.abs() <= most).then_some(Asked { accelerates: [designed, alone], direction });
         let held = of_motor * (T::ONE - direction.abs());
         let deviation = self.brakes.variance(direction).square_root();
-        Some(self.torque.over(tables.watch.least_demand + held + deviation))
+        Some(self.torque / (tables.watch.least_demand + held + deviation))
     }
 
     /// Updates the estimates by the torque of one of [`Turn::periods`] periods [N m].
@@ -162,7 +162,7 @@ impl<T: Real> Demand<T> {
         if self.largest > least * least {
             let excess = brakes - self.brakes.torque(direction);
             // The link inertia stays within a quarter to four times the designed value, as everywhere.
-            let by = T::TWO * share * (excess * designed).over(self.largest);
+            let by = T::TWO * share * ((excess * designed) / self.largest);
             let link = tables.body.load_share;
             let [lightest, heaviest] = [T::QUARTER, T::FOUR].map(|ratio| T::ONE + link * (ratio - T::ONE));
             self.inertia = clamp(self.inertia + by, lightest, heaviest);

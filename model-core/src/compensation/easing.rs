@@ -6,7 +6,7 @@ use super::load::LoadModel;
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::{clamp, deadband};
 
 /// State of the easing.
 #[derive(Debug, Clone, Copy)]
@@ -49,9 +49,10 @@ impl<T: Real> Easing<T> {
         self.gave_way = (self.gave_way || self.place.is_some_and(gives_way)) && !load.throws(tables);
         let measured = tables.switching.measured;
         let least = measured * tables.switching.least;
-        let is_felt = beyond(load.even(), least) != T::ZERO;
-        let may_be_friction = beyond(load.even(), measured + measured + load.friction()) == T::ZERO;
-        let is_steady = beyond(situation.error, slight) == T::ZERO && beyond(load.even() - self.load, least) == T::ZERO;
+        let is_felt = deadband(load.even(), least) != T::ZERO;
+        let may_be_friction = deadband(load.even(), measured + measured + load.friction()) == T::ZERO;
+        let is_steady =
+            deadband(situation.error, slight) == T::ZERO && deadband(load.even() - self.load, least) == T::ZERO;
         let goes_on = stands && !self.gave_way && is_felt && may_be_friction;
         if !goes_on || self.place.is_none() && !is_steady {
             *self = Self { load: load.even(), steady: T::ZERO, place: None, ..*self };

@@ -118,7 +118,7 @@ impl<T: Real> BacklashInverse<T> {
         self.pressed = if presses { longer } else { T::ZERO };
         if self.pressed > Self::SETTLES {
             self.has_settled = true;
-            let edge = situation.lead - situation.shift - self.demand.torque().over(situation.stiffness);
+            let edge = situation.lead - situation.shift - self.demand.torque() / situation.stiffness;
             let [drive, back] = &mut self.edges;
             let known = if self.share > T::ZERO { drive } else { back };
             let before = known.unwrap_or(edge);
@@ -152,7 +152,7 @@ impl<T: Real> BacklashInverse<T> {
         // An edge that was not measured follows from the gap, or from the other edge and the guessed lost motion.
         // Without any edge the motor stays where it stands, wound up or not.
         let [drive, back] = self.edges;
-        let wind_up = self.demand.torque().over(situation.stiffness);
+        let wind_up = self.demand.torque() / situation.stiffness;
         let place = |seen: Option<T>, other: Option<T>, flank: Flank| {
             let by_other = |other: T| other + T::TWO * flank.sign::<T>() * situation.half;
             let by_gap = || situation.half_is_known.then(|| situation.offset + flank.sign::<T>() * situation.half);

@@ -12,7 +12,7 @@ use super::load::LoadModel;
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::{clamp, deadband};
 
 /// Static torque through the teeth, T, under a torque after losses: law and load accelerate motor and link together,
 /// and the motor's inertia takes its share [N m].
@@ -24,11 +24,11 @@ pub(super) fn passed<T: Real>(tables: &CompensationTables<T>, free: T, useful: T
 /// released where the law asks for more than the motor has: the link lags anyway, and more with a reserve.
 pub(super) fn spared<T: Real>(tables: &CompensationTables<T>, useful: T) -> T {
     let limits = &tables.limits;
-    let short = beyond(useful, limits.motor).abs();
+    let short = deadband(useful, limits.motor).abs();
     if short == T::ZERO {
         return limits.teeth;
     }
-    limits.teeth + clamp(short.over(limits.motor), T::ZERO, T::ONE) * (limits.teeth_at_most - limits.teeth)
+    limits.teeth + clamp(short / limits.motor, T::ZERO, T::ONE) * (limits.teeth_at_most - limits.teeth)
 }
 
 /// Torque after losses, limited so that the torque through the teeth stays within `most` [N m].
@@ -63,6 +63,6 @@ fn allowed<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, si
     let swing =
         if closing > T::ZERO { situation.stiffness * tables.body.reduced_inertia * closing * closing } else { T::ZERO };
     let least = tables.limits.least_room;
-    let taken = room.abs() + swing.over(if room > least { room } else { least });
+    let taken = room.abs() + swing / if room > least { room } else { least };
     clamp(most - T::HALF * taken, T::HALF * most, most)
 }

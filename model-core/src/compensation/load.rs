@@ -12,7 +12,7 @@ use super::load_swing::LoadSwing;
 use super::situation::{Situation, planned_direction};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::{clamp, deadband};
 use crate::observer::Estimates;
 
 /// Even load and dry friction of the load torque.
@@ -118,7 +118,7 @@ impl<T: Real> LoadModel<T> {
     /// Smallest torque that the start of a link at rest needs [N m]; 0 for a link that a flank must hold. A load within
     /// friction does not move a link without a flank, but a start must overcome that friction.
     pub fn start(&self, tables: &CompensationTables<T>) -> T {
-        let held = beyond(self.brakes.even, tables.switching.measured + self.brakes.friction) == T::ZERO;
+        let held = deadband(self.brakes.even, tables.switching.measured + self.brakes.friction) == T::ZERO;
         if held { T::TWO * tables.switching.measured + self.brakes.friction } else { T::ZERO }
     }
 

@@ -11,7 +11,7 @@
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::{clamp, deadband};
 
 /// Detector of a swing of the load.
 #[derive(Debug, Clone)]
@@ -59,11 +59,11 @@ impl<T: Real> LoadSwing<T> {
         let period = tables.clock.period;
         self.since = clamp(self.since + period, T::ZERO, T::ONE);
         let Some(reading) = reading.filter(|reading| reading.is_finite()) else { return };
-        self.left = beyond(self.left, period);
+        self.left = deadband(self.left, period);
         let [fast, slow] = &mut self.means;
         *fast += tables.switching.smoothing * (reading - *fast);
         *slow += tables.watch.smoothing * (*fast - *slow);
-        let excess = beyond(*fast - *slow, tables.switching.measured);
+        let excess = deadband(*fast - *slow, tables.switching.measured);
         if excess == T::ZERO {
             return;
         }

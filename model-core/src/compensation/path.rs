@@ -22,8 +22,8 @@ impl<T: Real> Path<T> {
         let Crossing { duration, ramp } = crossing;
         let long = duration - ramp;
         let at_full = end[0] - start[0] - T::HALF * ramp * (start[1] + end[1]);
-        let steady = if long > T::ZERO { at_full.over(long) } else { T::ZERO };
-        let inverse_ramp = if ramp > T::ZERO { T::ONE.over(ramp) } else { T::ZERO };
+        let steady = if long > T::ZERO { at_full / long } else { T::ZERO };
+        let inverse_ramp = if ramp > T::ZERO { T::ONE / ramp } else { T::ZERO };
         Self { start, end, steady, crossing, inverse_ramp }
     }
 

@@ -21,7 +21,7 @@ use super::start_prediction::StartPrediction;
 use crate::compensation::tables::CompensationTables;
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::{clamp, deadband};
 
 /// Smoothing rate of the set-point's jerk over the smoothing rate of measured torque: planners send coarse steps, but
 /// no noise.
@@ -82,7 +82,7 @@ impl<T: Real> PositionLaw<T> {
 
     /// Error beyond the dead band [rad].
     pub fn heeded(&self, situation: &Situation<T>) -> T {
-        beyond(situation.error, self.deadband)
+        deadband(situation.error, self.deadband)
     }
 
     pub fn intend(
@@ -100,8 +100,8 @@ impl<T: Real> PositionLaw<T> {
         let asks = now.acceleration.abs();
         self.hardest = if asks > hardest { asks } else { hardest };
 
-        let error = beyond(situation.error, let_be);
-        let soon = now.acceleration + tables.crossing.lead.over(known) * asked[1];
+        let error = deadband(situation.error, let_be);
+        let soon = now.acceleration + (tables.crossing.lead / known) * asked[1];
         let soon = if ahead.is_some() { soon } else { clamp(soon, -self.hardest, self.hardest) };
         let course = Course { speed: now.speed, acceleration: now.acceleration, ahead: soon };
         let braking = Braking::new(tables, load, situation);
@@ -141,7 +141,7 @@ impl<T: Real> PositionLaw<T> {
             if ahead.is_some() { (T::ONE - T::THIRD) * tables.switching.smoothing } else { tables.switching.smoothing };
         self.level += clamp(smoothing * clamp(weight * weight, T::ONE, tables.clock.rate), T::ZERO, T::HALF) * change;
         let planned = |time: T| {
-            let part = time.over(known);
+            let part = time / known;
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
             tables.body.load_inertia * (now.acceleration + part * asked[1]) + load.planned_drag(tables, speed)
@@ -158,7 +158,7 @@ impl<T: Real> PositionLaw<T> {
             Some(lag) => braking.demand(tables, load, lag, &course, time),
         };
         // A joint that carries a load is not idle: the loaded flank is kept.
-        let idles = rests && beyond(load.even(), tables.switching.measured) == T::ZERO;
+        let idles = rests && deadband(load.even(), tables.switching.measured) == T::ZERO;
         let direction = if now.speed == T::ZERO { now.acceleration } else { now.speed };
         let likely = self.start.step(tables, situation, direction, rests);
         let expects = if ahead.is_none() { sign::<T>(likely) * load.start(tables) } else { T::ZERO };
@@ -173,7 +173,7 @@ impl<T: Real> PositionLaw<T> {
             expects,
             ..Intent::new(tables, load, situation, law, demand, false)
         };
-        let surely = beyond(intent.demand_ahead, tables.switching.measured * tables.switching.least);
+        let surely = deadband(intent.demand_ahead, tables.switching.measured * tables.switching.least);
         self.find_deadband(tables, rests, idles, surely, situation.half);
         intent
     }

@@ -74,7 +74,7 @@ impl<T: Real> Situation<T> {
         let contact = Flank::touched(estimates.reported_contact);
         let half = clamp(tables.gear.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.body.widest_half);
         let [softest, stiffest] = tables.body.compliances;
-        let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
+        let stiffness = T::ONE / clamp(estimates.compliance.value, stiffest, softest);
         let learnt = &estimates.link_inertia_ratio;
         let ratio = if learnt.valid { clamp(learnt.value, T::QUARTER, T::FOUR) } else { T::ONE };
         let at_link = T::HALF * tables.gear.inverse_lever;
@@ -140,7 +140,7 @@ impl<T: Real> Situation<T> {
 
     /// Cogging torque of the motor less the cogging torque in a joint without a gap [N m].
     pub fn cogging_by_gap(&self, tables: &CompensationTables<T>) -> T {
-        let phase = self.motor_place.over(T::PHASE_UNIT).to_phase().wrapping_mul(tables.gear.cogging_periods);
+        let phase = (self.motor_place / T::PHASE_UNIT).to_phase().wrapping_mul(tables.gear.cogging_periods);
         let without_gap = phase.wrapping_sub((tables.gear.cogging_phase_per_radian * self.beyond_link()).to_phase());
         let [here, there] = [phase, without_gap].map(|phase| {
             let (sine, cosine) = sine_cosine::<T>(phase);

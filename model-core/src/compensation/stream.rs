@@ -35,7 +35,7 @@ impl<T: Real> Stream<T> {
                     self.interval = self.age + tables.clock.period;
                 }
                 let between = if self.interval > tables.clock.period { self.interval } else { tables.clock.period };
-                let rate = (point.torque - last.torque).over(between);
+                let rate = (point.torque - last.torque) / between;
                 // Half of the change: jitter between set-points is no trend.
                 self.torque_rate = T::HALF * (self.torque_rate + rate);
                 self.travel = point.position.less(last.position.turns, last.position.fraction);

@@ -3,7 +3,7 @@
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::beyond;
+use crate::numbers::arithmetic::deadband;
 
 /// Detector of a swing of the torque of one law.
 #[derive(Debug, Clone)]
@@ -32,9 +32,9 @@ impl<T: Real> Swing<T> {
 
     /// Checks the torque of one of `periods` periods [N m].
     pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
-        let excess = beyond(torque, Self::LARGE * tables.limits.motor);
+        let excess = deadband(torque, Self::LARGE * tables.limits.motor);
         if excess == T::ZERO {
-            self.large = beyond(self.large, Self::SWINGS * periods * tables.law.back_calculation);
+            self.large = deadband(self.large, Self::SWINGS * periods * tables.law.back_calculation);
         } else {
             let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
             self.swings |= side * self.large < T::ZERO;

@@ -202,7 +202,7 @@ impl<T: Real> Watch<T> {
         }
         if self.judged < Self::FOUND {
             self.judged += Turn::periods::<T>() * tables.law.back_calculation;
-            let found = situation.error.abs() + T::TWO * situation.error_rate.abs().over(tables.law.rate);
+            let found = situation.error.abs() + T::TWO * (situation.error_rate.abs() / tables.law.rate);
             let found = found * found;
             self.granted = if found > self.granted { found } else { self.granted };
         }

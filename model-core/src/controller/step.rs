@@ -6,8 +6,9 @@ use crate::compensation::{Command, Compensation, Shaped};
 use crate::controller::ControllerDesign;
 use crate::numbers::Real;
 use crate::numbers::digest::chain;
-use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
+use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Samples};
 use crate::observer::{ObserverTables, ProbeTable};
+use crate::width_probe::{Probe, ProbeProgress};
 
 /// Outputs of one control period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Answer<T: Real = f32> {
     /// Outputs of the compensation.
     pub shaped: Shaped<T>,
     /// Progress of the width probe, in a period of the probe.
-    pub probed: Option<Progress<T>>,
+    pub probed: Option<ProbeProgress<T>>,
 }
 
 impl<T: Real> Answer<T> {
@@ -25,7 +26,7 @@ impl<T: Real> Answer<T> {
     pub fn digest(&self, running: u64) -> u64 {
         let Self { estimates, shaped, probed } = self;
         let running = match probed {
-            Some(Progress::Done(width)) => chain(running, width.value.bits()),
+            Some(ProbeProgress::Done(width)) => chain(running, width.value.bits()),
             _ => running,
         };
         [shaped.torque, estimates.gap.value, estimates.half_backlash.value, estimates.load_torque.value, shaped.trust]
@@ -96,7 +97,7 @@ impl<'tables, T: Real> Controller<'tables, T> {
 
     /// Returns to the initial state and discards all estimated parameters.
     pub fn reset(&mut self) {
-        self.observer.restart();
+        self.observer.reset();
         self.compensation.restart();
         self.probing = None;
     }
@@ -136,11 +137,11 @@ impl<'tables, T: Real> Controller<'tables, T> {
         let Some(Probing { probe, wait }) = &mut self.probing else {
             self.compensation.restart();
             self.probing = Some(Probing { probe: Probe::new(table), wait: table.settle });
-            return Answer { probed: Some(Progress::Running), ..still };
+            return Answer { probed: Some(ProbeProgress::Running), ..still };
         };
         if *wait > 0 {
             *wait -= 1;
-            return Answer { probed: Some(Progress::Running), ..still };
+            return Answer { probed: Some(ProbeProgress::Running), ..still };
         }
         let (torque, progress) = probe.step(&estimates);
         Answer { shaped: Shaped { torque, ..Shaped::default() }, probed: Some(progress), ..still }

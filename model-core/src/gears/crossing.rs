@@ -186,14 +186,14 @@ impl<T: Real> Path<T> {
             return T::ONE;
         }
         // With rate > value >= 0 the quotient is within the sub-step.
-        let guess = if value < rate { value.over(rate) } else { T::ONE };
+        let guess = if value < rate { value / rate } else { T::ONE };
         let slope = rate - guess * acceleration;
         // Below half the secant's slope the parabola turns within the sub-step, and the secant is more accurate.
         if slope + slope < rate {
             return guess;
         }
         let rest = value - guess * (rate - T::HALF * guess * acceleration);
-        let refined = guess + rest.over(slope);
+        let refined = guess + rest / slope;
         if refined < T::ZERO {
             T::ZERO
         } else if refined < T::ONE {

@@ -144,7 +144,7 @@ impl<T: Real> Flank<T> {
         let twelfth = T::HALF * T::SIXTH * time;
         let along = T::ONE - twelfth * time;
         let across = T::HALF * time + self.damping * twelfth * time;
-        let scale = time.over(along * (along + self.damping * across) + across * across);
+        let scale = time / (along * (along + self.damping * across) + across * across);
         let braking = beyond + self.damping * at.rate;
         Point {
             position: scale * (along * at.rate - across * beyond),
@@ -160,12 +160,12 @@ fn first_rise<T: Real>(start: T, rise: T, curve: T) -> T {
     if rise <= T::ZERO {
         return T::ONE;
     }
-    let inverse = T::ONE.over(rise);
+    let inverse = T::ONE / rise;
     let (chord, bend) = (-(start * inverse), curve * inverse);
     let step = |share: T| {
         let gradient = T::ONE + bend * (share + share - T::ONE);
         let left = share - chord + bend * share * (share - T::ONE);
-        share - left.over(if gradient > T::QUARTER { gradient } else { T::QUARTER })
+        share - left / if gradient > T::QUARTER { gradient } else { T::QUARTER }
     };
     let share = step(step(chord));
     if share < T::ONE { share } else { T::ONE }

@@ -208,12 +208,12 @@ impl<T: Real> Grazing<T> {
             return (self.stiffness * over + viscous, T::ONE);
         }
         // Here 0 < reach < travel.
-        let part = reach.over(travel);
+        let part = reach / travel;
         let mut square = reach * part;
         // If the path crosses the whole gap, the other flank pushes back.
         let other = self.half_travel - self.over - self.width;
         if other > T::ZERO {
-            square -= other * other.over(travel);
+            square -= other * (other / travel);
         }
         let viscous = if CONTACT_LAW { part * viscous } else { viscous };
         (self.stiffness * (T::HALF * square) + viscous, part)

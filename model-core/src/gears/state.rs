@@ -142,7 +142,7 @@ impl<T: Real, const N: usize> State<T, N> {
         rates: &Relative<T, N>,
         carrier_speed: T,
     ) -> Self {
-        let speed = carrier_speed.over(tables.units.carrier_speed).to_i64();
+        let speed = (carrier_speed / tables.units.carrier_speed).to_i64();
         Self::with_rigid_body(tables, deflections, rates, RigidBody { speed, ..RigidBody::REST })
     }
 

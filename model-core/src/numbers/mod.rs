@@ -1,10 +1,12 @@
 //! Arithmetic with equal bits on every host and board: scalar trait of the core, sine and cosine of phases, clamp and dead
-//! band, digests, random words.
+//! band, digests, random words, declaration of thresholds.
 
 pub(crate) mod arithmetic;
 pub mod digest;
 pub mod phase;
 pub mod random;
 mod real;
+mod thresholds;
 
 pub use real::Real;
+pub(crate) use thresholds::thresholds;

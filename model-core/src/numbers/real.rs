@@ -2,7 +2,7 @@
 //! operations with equal bits on host and target: no fused operations, no functions of the platform.
 
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Real number with bit-exact arithmetic on every host and target.
 pub trait Real:
@@ -13,6 +13,7 @@ pub trait Real:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
+    + Div<Output = Self>
     + Neg<Output = Self>
     + AddAssign
     + SubAssign
@@ -75,8 +76,6 @@ pub trait Real:
     fn to_phase(self) -> u32;
     /// Hyperbolic tangent, with equal bits on host and target.
     fn tanh(self) -> Self;
-    /// Quotient; `divisor` must not be zero.
-    fn over(self, divisor: Self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
     /// Square root, accurate to a few units in the last place; zero for zero, negative values and NaN. Newton's iteration from
@@ -140,9 +139,6 @@ macro_rules! real {
             }
             fn tanh(self) -> Self {
                 $tanh(self)
-            }
-            fn over(self, divisor: Self) -> Self {
-                self / divisor
             }
             fn abs(self) -> Self {
                 <$scalar>::abs(self)
@@ -276,7 +272,7 @@ mod tests {
     use crate::numbers::random::splitmix64;
 
     #[test]
-    fn a_whole_number_of_64_bits_is_the_one_that_the_language_says() {
+    fn to_i64_equals_cast() {
         let mut state = 7;
         let ends =
             [0x5e7f_ffff, 0x5e80_0000, 0x5eff_ffff, 0x5f00_0000, 0x4f80_0000, 0x4f7f_ffff, 0x7f80_0000, 0x7fc0_0000];
@@ -288,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_of_a_whole_one_of_64_bits_is_the_one_that_the_language_says() {
+    fn from_i64_equals_cast() {
         let mut state = 7;
         // Midpoints between two adjacent numbers, and the integers next to the midpoints, at every magnitude.
         let halves = (24..63).flat_map(|bit| {

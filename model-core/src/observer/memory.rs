@@ -7,7 +7,7 @@
 
 use core::fmt;
 
-use super::learnt::Learnt;
+use super::identification::ParameterEstimator;
 use super::tables::ObserverTables;
 use crate::numbers::{Real, digest};
 
@@ -56,16 +56,24 @@ impl fmt::Display for MemoryError {
 impl core::error::Error for MemoryError {}
 
 /// Serializes the estimated parameters; `start` is the position of the encoders' zeros in units of their difference.
-pub(super) fn save<T: Real, const P: usize>(tables: &ObserverTables<T>, start: i64, learnt: &Learnt<T, P>) -> Memory {
+pub(super) fn save<T: Real, const P: usize>(
+    tables: &ObserverTables<T>,
+    start: i64,
+    estimator: &ParameterEstimator<T, P>,
+) -> Memory {
     let mut memory = [0; MEMORY_BYTES];
     let mut writer = Writer { bytes: memory.iter_mut() };
-    writer.put(&MARK.to_le_bytes());
-    writer.put(&VERSION.to_le_bytes());
-    writer.put(&(P as u16).to_le_bytes());
-    writer.put(&tables.identity.to_le_bytes());
-    writer.put(&start.to_le_bytes());
-    let numbers = learnt.learner.numbers().chain(learnt.bias.numbers()).chain(learnt.inertia.numbers());
-    numbers.for_each(|number| writer.number(number));
+    writer.write_bytes(&MARK.to_le_bytes());
+    writer.write_bytes(&VERSION.to_le_bytes());
+    writer.write_bytes(&(P as u16).to_le_bytes());
+    writer.write_bytes(&tables.identity.to_le_bytes());
+    writer.write_bytes(&start.to_le_bytes());
+    let saved_numbers = estimator
+        .least_squares
+        .saved_numbers()
+        .chain(estimator.bias.saved_numbers())
+        .chain(estimator.inertia.saved_numbers());
+    saved_numbers.for_each(|number| writer.write_number(number));
     let digest = digest_of(&memory);
     if let Some(place) = memory.get_mut(DIGEST_AT..) {
         place.copy_from_slice(&digest.to_le_bytes());
@@ -77,10 +85,10 @@ pub(super) fn save<T: Real, const P: usize>(tables: &ObserverTables<T>, start: i
 pub(super) fn load<T: Real, const P: usize>(
     memory: &[u8],
     tables: &ObserverTables<T>,
-    learnt: &mut Learnt<T, P>,
+    estimator: &mut ParameterEstimator<T, P>,
 ) -> Result<i64, MemoryError> {
     let mut reader = Reader { bytes: memory };
-    let (mark, version) = (reader.take().map(u32::from_le_bytes), reader.take().map(u16::from_le_bytes));
+    let (mark, version) = (reader.read_bytes().map(u32::from_le_bytes), reader.read_bytes().map(u16::from_le_bytes));
     if memory.len() != MEMORY_BYTES || mark != Some(MARK) {
         return Err(MemoryError::NotAMemory);
     }
@@ -91,26 +99,27 @@ pub(super) fn load<T: Real, const P: usize>(
     if stored != Some(digest_of(memory)) {
         return Err(MemoryError::Damaged);
     }
-    let parameters = reader.take().map(u16::from_le_bytes);
-    let identity = reader.take().map(u64::from_le_bytes);
-    let start = reader.take().map(i64::from_le_bytes).unwrap_or(0);
+    let parameters = reader.read_bytes().map(u16::from_le_bytes);
+    let identity = reader.read_bytes().map(u64::from_le_bytes);
+    let start = reader.read_bytes().map(i64::from_le_bytes).unwrap_or(0);
     if parameters != Some(P as u16) || identity != Some(tables.identity) {
         return Err(MemoryError::OtherJoint);
     }
-    let (mut learner, mut bias, mut inertia) = (learnt.learner, learnt.bias, learnt.inertia);
-    let mut next = || reader.number();
-    learner.set_numbers(&mut next);
-    bias.set_numbers(&mut next);
-    inertia.set_numbers(&mut next);
+    let (mut least_squares, mut bias, mut inertia) = (estimator.least_squares, estimator.bias, estimator.inertia);
+    let mut next_number = || reader.read_number();
+    least_squares.restore_numbers(&mut next_number);
+    bias.restore_numbers(&mut next_number);
+    inertia.restore_numbers(&mut next_number);
     // NaN fails every range check.
-    if !(learner.is_possible(tables) && bias.is_possible(&tables.contact) && inertia.is_possible(&tables.inertia)) {
+    if !(least_squares.is_in_range(tables) && bias.is_in_range(&tables.contact) && inertia.is_in_range(&tables.inertia))
+    {
         return Err(MemoryError::OutOfRange);
     }
     // Pending samples were evaluated with the old parameters and are discarded.
-    learnt.interrupt();
-    learnt.learner = learner;
-    learnt.bias = bias;
-    learnt.inertia = inertia;
+    estimator.discard_interval();
+    estimator.least_squares = least_squares;
+    estimator.bias = bias;
+    estimator.inertia = inertia;
     Ok(start)
 }
 
@@ -131,8 +140,8 @@ pub(super) fn load<T: Real, const P: usize>(
 /// # Ok::<(), model_core::gears::design::DesignError>(())
 /// ```
 pub fn memory_numbers(memory: &Memory) -> impl Iterator<Item = f32> {
-    let (numbers, _) = memory.get(HEAD..).unwrap_or_default().as_chunks();
-    numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))
+    let (saved_numbers, _) = memory.get(HEAD..).unwrap_or_default().as_chunks();
+    saved_numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))
 }
 
 /// Digest of all bytes before the digest.
@@ -145,14 +154,14 @@ struct Writer<'memory> {
 }
 
 impl Writer<'_> {
-    fn put(&mut self, bytes: &[u8]) {
+    fn write_bytes(&mut self, bytes: &[u8]) {
         bytes.iter().zip(self.bytes.by_ref()).for_each(|(byte, place)| *place = *byte);
     }
 
     /// Not inlined, like the reader's counterpart: more than a hundred calls, outside the tick.
     #[inline(never)]
-    fn number<T: Real>(&mut self, number: T) {
-        self.put(&(number.to_f64() as f32).to_le_bytes());
+    fn write_number<T: Real>(&mut self, number: T) {
+        self.write_bytes(&(number.to_f64() as f32).to_le_bytes());
     }
 }
 
@@ -161,14 +170,14 @@ struct Reader<'memory> {
 }
 
 impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (taken, rest) = self.bytes.split_first_chunk()?;
+    fn read_bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (disturbance_torque, rest) = self.bytes.split_first_chunk()?;
         self.bytes = rest;
-        Some(*taken)
+        Some(*disturbance_torque)
     }
 
     #[inline(never)]
-    fn number<T: Real>(&mut self) -> T {
-        T::from_f64(f32::from_le_bytes(self.take().unwrap_or_default()).into())
+    fn read_number<T: Real>(&mut self) -> T {
+        T::from_f64(f32::from_le_bytes(self.read_bytes().unwrap_or_default()).into())
     }
 }

@@ -8,7 +8,7 @@
 //! | `sensors` | raw counts and times | counts, exact over turns and wrap-around (O1), ages, notices |
 //! | `filters` | counts, commanded torque | torque taken from the motor (O2, O3); angle, speed, load torque of the link (O4) |
 //! | `contact` | mesh force, deflection | flank in contact (O8, O10) |
-//! | `learnt` | outputs of the rows above | parameters of joint, encoders and motor, with their variances (O6 to O20) |
+//! | `estimator` | outputs of the rows above | parameters of joint, encoders and motor, with their variances (O6 to O20) |
 //! | `health` | counts, deflection | encoders in use (O21 to O25); link state without output encoder (O26, O27) |
 //!
 //! [`Estimates`] are the published result. `docs/theory/observer.md` lists equations and limits.
@@ -19,33 +19,34 @@ pub mod design;
 mod estimates;
 mod filters;
 mod health;
-mod learnt;
+mod identification;
 mod memory;
 mod outputs;
-mod probe;
 mod samples;
 pub(crate) mod sensors;
 pub mod tables;
+#[cfg(test)]
+mod test_tables;
+mod thresholds;
 
 use core::mem::MaybeUninit;
 
 use contact::Contact;
 use filters::Filters;
-use health::motor_faults::{MotorScreened, Outlook};
-use health::{Health, Judged, LastMotion, Return, Screened};
-use learnt::fusion::Fused;
-use learnt::{Learnt, Outcome};
-use sensors::counts::Advance;
-use sensors::latency::Freshness;
-use sensors::{Sensed, Sensors};
+use health::motor_faults::{MotorReadingStatus, RecoveryState};
+use health::{FaultDecision, Health, LastMotion, ReadingStatus, Readmission};
+use identification::mesh_measurement::MeshMeasurement;
+use identification::{Outcome, ParameterEstimator};
+use sensors::counts::CountChange;
+use sensors::latency::SampleAge;
+use sensors::{SensorReadings, Sensors};
 
 use crate::gears::sign;
 use crate::numbers::Real;
 
 pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
-pub use learnt::regressors::{MAPPED, PLAIN};
+pub use identification::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
-pub use probe::{Probe, Progress, Refusal};
 pub use samples::{Reading, Samples};
 pub use tables::{ObserverTables, ProbeTable};
 
@@ -60,21 +61,21 @@ pub use tables::{ObserverTables, ProbeTable};
 /// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
 ///
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-/// let mut told = q1.parameters.clone();
-/// told.sun_planet.half_backlash.iter_mut().for_each(|half_backlash| *half_backlash = 60e-6);
+/// let mut designed = q1.parameters.clone();
+/// designed.sun_planet.half_backlash.iter_mut().for_each(|half_backlash| *half_backlash = 60e-6);
 /// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
 /// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
-/// let tables = design_observer(&told, &observer_settings(&q1.surroundings))?;
+/// let tables = design_observer(&designed, &observer_settings(&q1.surroundings))?;
 /// let mut joint = VirtualJoint::new(&gears, &around);
 /// let mut observer = Observer::<f32, MAPPED>::new(&tables);
 /// for period in 0..30_000 {
 ///     observer.step(&joint.samples());
 ///     joint.advance((12.6 * 1e-4 * period as f32).cos(), 0.0);
 /// }
-/// let said = observer.estimates();
-/// assert_eq!(said.source, Source::Both);
-/// assert!((said.half_backlash.value / 40e-6 - 1.0).abs() < 0.05, "it is 40 um: {:?}", said.half_backlash);
-/// assert!(said.gap.valid && said.gap.variance.sqrt() < 10e-6);
+/// let estimates = observer.estimates();
+/// assert_eq!(estimates.source, Source::Both);
+/// assert!((estimates.half_backlash.value / 40e-6 - 1.0).abs() < 0.05, "true: 40 um, {:?}", estimates.half_backlash);
+/// assert!(estimates.gap.valid && estimates.gap.variance.sqrt() < 10e-6);
 /// # Ok::<(), model_core::gears::design::DesignError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -83,7 +84,7 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     sensors: Sensors,
     filters: Filters<T>,
     contact: Contact,
-    learnt: Learnt<T, P>,
+    estimator: ParameterEstimator<T, P>,
     health: Health<T>,
     estimates: Estimates<T>,
 }
@@ -91,8 +92,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
 impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// Builds an observer with the designed parameters.
     pub fn new(tables: &'tables ObserverTables<T>) -> Self {
-        let mut observer = Self::unbegun(tables);
-        observer.begin();
+        let mut observer = Self::uninitialized(tables);
+        observer.initialize();
         observer
     }
 
@@ -101,49 +102,52 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         place: &'place mut MaybeUninit<Self>,
         tables: &'tables ObserverTables<T>,
     ) -> &'place mut Self {
-        let observer = Self::put(place, tables);
-        observer.begin();
+        let observer = Self::write_uninitialized(place, tables);
+        observer.initialize();
         observer
     }
 
     /// Not inlined, so that its stack is free again when the parts are initialised.
     #[inline(never)]
-    fn put<'place>(place: &'place mut MaybeUninit<Self>, tables: &'tables ObserverTables<T>) -> &'place mut Self {
-        place.write(Self::unbegun(tables))
+    fn write_uninitialized<'place>(
+        place: &'place mut MaybeUninit<Self>,
+        tables: &'tables ObserverTables<T>,
+    ) -> &'place mut Self {
+        place.write(Self::uninitialized(tables))
     }
 
     /// Builds an observer whose parts are not initialised from the tables yet.
     #[inline(always)]
-    fn unbegun(tables: &'tables ObserverTables<T>) -> Self {
+    fn uninitialized(tables: &'tables ObserverTables<T>) -> Self {
         let has_output = tables.counts.has_output;
         Self {
             tables,
             sensors: Sensors::new(has_output),
             filters: Filters::default(),
             contact: Contact::default(),
-            learnt: Learnt::unbegun(tables),
+            estimator: ParameterEstimator::uninitialized(tables),
             health: Health::new(has_output),
             estimates: Estimates::default(),
         }
     }
 
     /// Resets the observer in place to the designed parameters.
-    pub fn restart(&mut self) {
-        self.clear();
-        self.begin();
+    pub fn reset(&mut self) {
+        self.write_reset();
+        self.initialize();
     }
 
     /// Not inlined, so that its stack is free again when the parts are initialised.
     #[inline(never)]
-    fn clear(&mut self) {
-        *self = Self::unbegun(self.tables);
+    fn write_reset(&mut self) {
+        *self = Self::uninitialized(self.tables);
     }
 
     /// Initialises the parts from the tables and publishes the initial parameters.
-    fn begin(&mut self) {
-        self.learnt.begin(self.tables);
-        self.find_errors();
-        self.say_learnt();
+    fn initialize(&mut self) {
+        self.estimator.initialize(self.tables);
+        self.update_position_errors();
+        self.publish_parameters();
     }
 
     /// Estimates of the last step.
@@ -154,48 +158,49 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// Processes the samples of one control period and returns the updated estimates.
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
         let tables = self.tables;
-        let sensed = self.sensors.step(tables, samples);
-        self.estimates.notices = sensed.notices();
-        self.check_response(&sensed);
-        let motor = self.health.screen_motor(tables, &sensed, &self.sensors, &self.filters);
-        self.filters.step(tables, &sensed, motor == MotorScreened::Used);
-        let screened = self.health.screen(tables, &sensed);
-        match screened {
-            Screened::First => self.filters.load.ahead = T::ZERO,
-            Screened::Used => self.filters.correct_load(tables, &sensed),
-            Screened::NotUsed => {}
-            Screened::GivenUp(_, last) => self.rely_on_motor(last),
+        let readings = self.sensors.step(tables, samples);
+        self.estimates.notices = readings.notices();
+        self.check_torque_response(&readings);
+        let motor = self.health.check_motor_reading(tables, &readings, &self.sensors, &self.filters);
+        self.filters.step(tables, &readings, motor == MotorReadingStatus::Accepted);
+        let output_status = self.health.check_output_reading(tables, &readings);
+        match output_status {
+            ReadingStatus::First => self.filters.load.angle_residual = T::ZERO,
+            ReadingStatus::Accepted => self.filters.correct_load(tables, &readings),
+            ReadingStatus::Rejected => {}
+            ReadingStatus::Excluded(_, last) => self.continue_without_output(last),
         }
         let meshes = tables.counts.mesh_periods;
-        let far = self.learnt.errors.go_on(sensed.motor_turned, sensed.output_turned, meshes);
-        if far || matches!(screened, Screened::First) || !matches!(sensed.motor, Advance::By(_)) {
-            self.find_errors();
+        let is_far = self.estimator.errors.advance(readings.motor_travel, readings.output_travel, meshes);
+        if is_far || matches!(output_status, ReadingStatus::First) || !matches!(readings.motor, CountChange::By(_)) {
+            self.update_position_errors();
         }
         match motor {
-            MotorScreened::Used | MotorScreened::NotUsed => {}
-            MotorScreened::GivenUp => return self.lose_motor(sensed.motor),
-            MotorScreened::Doubted(outlook) => return self.look_for_motor(outlook),
+            MotorReadingStatus::Accepted | MotorReadingStatus::Rejected => {}
+            MotorReadingStatus::Excluded => return self.exclude_motor(readings.motor),
+            MotorReadingStatus::Recovering(recovery) => return self.try_readmit_motor(recovery),
         }
 
-        let fused = self.fuse();
-        self.tell_contact(&fused);
-        match self.health.judge(tables, &fused, &self.learnt) {
-            Judged::Sound => {}
-            Judged::OutputFails => self.rely_on_motor(None),
-            Judged::MotorFails => return self.lose_motor(sensed.motor),
+        let measurement = self.measure_mesh();
+        self.detect_contact(&measurement);
+        match self.health.check_deflection(tables, &measurement, &self.estimator) {
+            FaultDecision::NoFault => {}
+            FaultDecision::ExcludeOutput => self.continue_without_output(None),
+            FaultDecision::ExcludeMotor => return self.exclude_motor(readings.motor),
         }
         if !self.health.both_encoders() {
-            let correction = self.health.motor_only.step(tables, &fused, &self.learnt);
+            let correction = self.health.unseen_link.step(tables, &measurement, &self.estimator);
             self.filters.correct_unseen_load(&tables.load, correction, tables.levers.per_ratio);
         }
-        self.say(&fused);
-        let late_for_good = self.sensors.latency.is_late_for_good();
-        let serves = matches!(sensed.freshness, Freshness::Fresh | Freshness::Lost) && !late_for_good;
-        if serves && !self.sensors.is_unsure() {
-            self.learn(&fused);
+        self.publish(&measurement);
+        let persistently_late = self.sensors.latency.is_persistently_late();
+        let is_usable =
+            matches!(readings.motor_sample_age, SampleAge::Fresh | SampleAge::Repeated) && !persistently_late;
+        if is_usable && !self.sensors.is_torque_uncertain() {
+            self.update_estimator(&measurement);
         } else {
             outputs::invalidate(&mut self.estimates);
-            if late_for_good {
+            if persistently_late {
                 self.estimates.source = Source::Nothing(MotorFault::Late);
             }
         }
@@ -204,10 +209,10 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
 
     /// Checks the signs of torque and motor encoder (O25).
     #[inline(always)]
-    fn check_response(&mut self, sensed: &Sensed<T>) {
+    fn check_torque_response(&mut self, readings: &SensorReadings<T>) {
         let response = &mut self.health.response;
-        if sensed.torque_known && !sensed.out_of_time && matches!(sensed.motor, Advance::By(_)) {
-            response.step(&self.tables.response, sensed.command, sensed.motor_turned);
+        if readings.torque_known && !readings.out_of_time && matches!(readings.motor, CountChange::By(_)) {
+            response.step(&self.tables.response, readings.command, readings.motor_travel);
         } else {
             response.interrupt();
         }
@@ -233,228 +238,230 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// # Ok::<(), model_core::gears::design::DesignError>(())
     /// ```
     pub fn save(&self) -> Memory {
-        memory::save(self.tables, self.sensors.counts.start, &self.learnt)
+        memory::save(self.tables, self.sensors.counts.start, &self.estimator)
     }
 
     /// Restores saved parameters. A rejected memory changes nothing.
     pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
-        let start = memory::load(memory, self.tables, &mut self.learnt)?;
-        self.find_errors();
+        let start = memory::load(memory, self.tables, &mut self.estimator)?;
+        self.update_position_errors();
         if self.tables.counts.absolute {
-            self.sensors.counts.refer_to(start, &self.tables.counts);
+            self.sensors.counts.set_reference(start, &self.tables.counts);
         } else {
-            self.learnt.learner.forget_places();
+            self.estimator.least_squares.reset_position_variances();
         }
         Ok(())
     }
 
     /// Combines motor side and link side into deflection and force (O7, O9).
     #[inline]
-    fn fuse(&self) -> Fused<T> {
-        self.learnt.fuse(self.tables, &self.sensors, &self.filters, self.health.both_encoders())
+    fn measure_mesh(&self) -> MeshMeasurement<T> {
+        self.estimator.measure_mesh(self.tables, &self.sensors, &self.filters, self.health.both_encoders())
     }
 
     /// Detects the contact (O8, O10) and sets the mesh torque.
     #[inline]
-    fn tell_contact(&mut self, fused: &Fused<T>) {
+    fn detect_contact(&mut self, measurement: &MeshMeasurement<T>) {
         let tables = self.tables;
-        let known = &self.learnt.uncertainty;
-        let both = self.health.both_encoders();
-        let deviations = [known.force_deviation, known.both_deviation];
-        let by_force = self.contact.by_force.step(fused.force, known.force_deviation);
-        let mut force = fused.force;
-        if !both {
+        let uncertainty = &self.estimator.uncertainty;
+        let both_encoders = self.health.both_encoders();
+        let deviations = [uncertainty.force_deviation, uncertainty.combined_deviation];
+        let by_force = self.contact.by_force.step(measurement.force, uncertainty.force_deviation);
+        let mut force = measurement.force;
+        if !both_encoders {
             let before = self.contact.reported;
-            self.contact.reported = self.health.motor_only.contact(fused, &self.learnt, before);
-        } else if known.half_gap_serves {
-            let position = self.learnt.position(fused.of_teeth(), fused.travel);
-            force = self.contact.step_by_position(&position, force, deviations, known.settled);
+            self.contact.reported = self.health.unseen_link.contact(measurement, &self.estimator, before);
+        } else if uncertainty.half_gap_is_usable {
+            let gap_position = self.estimator.gap_position(measurement.tooth_deflection(), measurement.travel);
+            force = self.contact.step_by_position(&gap_position, force, deviations, uncertainty.settled);
         } else {
             self.contact.reported = by_force;
         }
         // Before the half-gap is known, a light contact cannot be distinguished from an open gap: the motor side's
         // force is used.
-        let unsure = both && !known.half_gap_serves;
-        let open = self.contact.reported.is_none() && !unsure;
-        let lever = if open { T::ZERO } else { tables.levers.output };
-        self.filters.mesh_torque = self.learnt.inertia.pass(lever * fused.force);
+        let is_undecided = both_encoders && !uncertainty.half_gap_is_usable;
+        let is_open = self.contact.reported.is_none() && !is_undecided;
+        let lever = if is_open { T::ZERO } else { tables.levers.output };
+        self.filters.mesh_torque = self.estimator.inertia.mesh_torque_for_load(lever * measurement.force);
         self.estimates.mesh_torque.value = lever * force;
     }
 
     /// Holds the estimates after the motor encoder was excluded in this period.
     #[cold]
-    fn lose_motor(&mut self, last: Advance) -> &Estimates<T> {
-        self.sensors.counts.doubt_motor(&self.tables.counts, last);
-        self.learnt.interrupt();
-        self.learnt.lose_encoder();
-        self.say_nothing()
+    fn exclude_motor(&mut self, last: CountChange) -> &Estimates<T> {
+        self.sensors.counts.suspend_motor(&self.tables.counts, last);
+        self.estimator.discard_interval();
+        self.estimator.begin_probation();
+        self.hold_outputs()
     }
 
     /// Readmits the motor encoder once its readings are plausible and agree with the output encoder.
     #[cold]
-    fn look_for_motor(&mut self, outlook: Outlook) -> &Estimates<T> {
+    fn try_readmit_motor(&mut self, recovery: RecoveryState) -> &Estimates<T> {
         let tables = self.tables;
-        if outlook == Outlook::Bad {
-            return self.say_nothing();
+        if recovery == RecoveryState::NotPlausible {
+            return self.hold_outputs();
         }
-        self.filters.drive.hold();
-        self.sensors.counts.find_motor(&tables.counts);
-        self.find_errors();
-        let deflection = self.fuse().of_teeth();
-        if let Some(back) = self.health.finds_motor(outlook, &self.learnt, deflection) {
+        self.filters.drive.stop();
+        self.sensors.counts.resolve_motor_position(&tables.counts);
+        self.update_position_errors();
+        let deflection = self.measure_mesh().tooth_deflection();
+        if let Some(readmission) = self.health.try_readmit_motor(recovery, &self.estimator, deflection) {
             // The distance of a slip is unknown: assume teeth in the middle of the gap.
-            let slipped = back == Return::Otherwise;
-            let by = if slipped { deflection.over(tables.counts.length).to_i64() } else { 0 };
-            self.sensors.counts.trust_motor(&tables.counts, by);
-            self.find_errors();
-            if slipped {
-                self.learnt.doubt_motor(tables);
-                self.say_learnt();
+            let has_slipped = readmission == Readmission::NewOffset;
+            let slip = if has_slipped { (deflection / tables.counts.length).to_i64() } else { 0 };
+            self.sensors.counts.readmit_motor(&tables.counts, slip);
+            self.update_position_errors();
+            if has_slipped {
+                self.estimator.reset_motor_offset(tables);
+                self.publish_parameters();
             }
-            self.filters.find_motor(tables, self.health.motor_counts(), self.health.both_encoders());
+            self.filters.restart_motor_side(tables, self.health.motor_speed_in_counts(), self.health.both_encoders());
             // The next period publishes the first estimates after readmission.
             return &self.estimates;
         }
-        self.say_nothing()
+        self.hold_outputs()
     }
 
     /// Holds the estimates while the motor encoder is excluded; the mesh torque is set to zero.
-    fn say_nothing(&mut self) -> &Estimates<T> {
-        self.filters.drive.hold();
+    fn hold_outputs(&mut self) -> &Estimates<T> {
+        self.filters.drive.stop();
         self.filters.mesh_torque = T::ZERO;
         outputs::hold(&mut self.estimates, self.health.motor_fault().unwrap_or(MotorFault::Silent));
         &self.estimates
     }
 
-    /// Continues without the output encoder, which was excluded in this period. The link keeps its last motion, if known.
+    /// Continues without the output encoder, which was excluded in this period. The link keeps its last motion, if
+    /// known.
     #[cold]
-    fn rely_on_motor(&mut self, last: Option<LastMotion<T>>) {
+    fn continue_without_output(&mut self, last: Option<LastMotion<T>>) {
         let tables = self.tables;
-        self.learnt.lose_encoder();
-        if self.learnt.return_to_trusted(tables) {
-            self.find_errors();
-            self.say_learnt();
+        self.estimator.begin_probation();
+        if self.estimator.restore_trusted(tables) {
+            self.update_position_errors();
+            self.publish_parameters();
         }
         let load = &mut self.filters.load;
-        self.sensors.counts.imply();
+        self.sensors.counts.imply_output();
         load.speed = self.filters.drive.speed * tables.levers.per_ratio;
-        load.torque = self.health.load_torque_before();
+        load.torque = self.health.load_torque_before_fault();
         // The link is placed on the flank in contact, or in the middle of the gap; the next contact corrects the
         // position.
         let side: T = sign(self.contact.by_force.flank);
-        let [half_gap, _] = self.learnt.shape();
-        let implied = self.fuse();
+        let [half_gap, _] = self.estimator.half_gap_and_compliance();
+        let implied = self.measure_mesh();
         let load = &mut self.filters.load;
-        load.ahead += (implied.of_teeth() - side * half_gap).over(tables.levers.output);
+        load.angle_residual += (implied.tooth_deflection() - side * half_gap) / tables.levers.output;
         if let Some(last) = last {
             let count = tables.counts.output.angle;
-            load.ahead = count * last.ahead;
-            load.speed = count * last.speed.over(tables.period);
-            self.health.motor_only.keep_place();
+            load.angle_residual = count * last.lead;
+            load.speed = count * (last.speed / tables.period);
+            self.health.unseen_link.keep_position();
         }
     }
 
     /// Adds a period to the learning interval and does due estimation work.
-    fn learn(&mut self, fused: &Fused<T>) {
+    fn update_estimator(&mut self, measurement: &MeshMeasurement<T>) {
         let tables = self.tables;
-        self.learnt.add(fused);
-        if self.learnt.in_the_middle(&tables.learner) {
+        self.estimator.add_period(measurement);
+        if self.estimator.is_mid_interval(&tables.learner) {
             // With few periods per interval, the remaining work of the last interval is due now.
-            while self.learnt.has_work() {
-                self.work();
+            while self.estimator.has_task() {
+                self.run_task();
             }
-            let both = self.health.both_encoders();
-            self.learnt.keep_errors(tables, &self.sensors, &self.filters, both);
-        } else if self.learnt.has_work() {
-            self.work();
+            let both_encoders = self.health.both_encoders();
+            self.estimator.store_position_errors(tables, &self.sensors, &self.filters, both_encoders);
+        } else if self.estimator.has_task() {
+            self.run_task();
         }
-        if self.learnt.at_the_end(&tables.learner) {
-            self.close_interval();
+        if self.estimator.is_interval_over(&tables.learner) {
+            self.finish_interval();
         }
     }
 
     /// Does one task of the parameter estimation.
-    fn work(&mut self) {
-        let both = self.health.both_encoders();
-        let outcome = self.learnt.work(self.tables, &mut self.filters.load, both);
-        self.heed(outcome);
+    fn run_task(&mut self) {
+        let both_encoders = self.health.both_encoders();
+        let outcome = self.estimator.run_task(self.tables, &mut self.filters.load, both_encoders);
+        self.apply_outcome(outcome);
     }
 
     /// Ends a learning interval.
-    fn close_interval(&mut self) {
+    fn finish_interval(&mut self) {
         let tables = self.tables;
-        let both = self.health.both_encoders();
-        let reading = self.learnt.read(tables, self.filters.drive.speed, both);
-        if both {
-            self.health.remember(self.filters.load.torque);
-        } else if let Some(back) = self.health.reconsider(tables, &self.sensors, &self.filters, &self.learnt, &reading)
+        let both_encoders = self.health.both_encoders();
+        let interval = self.estimator.evaluate_interval(tables, self.filters.drive.speed, both_encoders);
+        if both_encoders {
+            self.health.store_load_torque(self.filters.load.torque);
+        } else if let Some(readmission) =
+            self.health.try_readmit_output(tables, &self.sensors, &self.filters, &self.estimator, &interval)
         {
-            self.trust_output(back);
+            self.readmit_output(readmission);
         }
-        let outcome = self.learnt.close(tables, &reading, self.health.both_encoders());
-        self.heed(outcome);
+        let outcome = self.estimator.finish_interval(tables, &interval, self.health.both_encoders());
+        self.apply_outcome(outcome);
     }
 
     /// Readmits the output encoder; `slip` is its slip as a deflection [m].
     #[cold]
-    fn trust_output(&mut self, (back, slip): (Return, T)) {
+    fn readmit_output(&mut self, (readmission, slip): (Readmission, T)) {
         let table = &self.tables.counts;
-        self.sensors.counts.trust(table, slip.over(table.length).to_i64());
-        self.filters.load.ahead = T::ZERO;
-        self.find_errors();
-        if back == Return::Otherwise {
-            self.learnt.reopen(self.tables);
-            self.say_learnt();
+        self.sensors.counts.readmit_output(table, (slip / table.length).to_i64());
+        self.filters.load.angle_residual = T::ZERO;
+        self.update_position_errors();
+        if readmission == Readmission::NewOffset {
+            self.estimator.reset_variances(self.tables);
+            self.publish_parameters();
         }
     }
 
     /// Applies the outcome of the parameter estimation to health and outputs.
-    fn heed(&mut self, outcome: Outcome) {
+    fn apply_outcome(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Nothing => {}
-            Outcome::Concluded => {
-                self.say_learnt();
+            Outcome::LimitsUpdated => {
+                self.publish_parameters();
                 if self.health.both_encoders() {
-                    self.learn_cogging();
+                    self.update_cogging();
                 }
             }
-            Outcome::EncoderFails => {
-                self.health.give_up(OutputFault::OutOfRange);
-                self.rely_on_motor(None);
+            Outcome::OutputEncoderFault => {
+                self.health.exclude_output(OutputFault::OutOfRange);
+                self.continue_without_output(None);
             }
         }
     }
 
     /// Updates the cogging estimate (O17) from the estimates of this period.
-    fn learn_cogging(&mut self) {
-        let said = &self.estimates;
-        let seen = [said.motor.fraction, said.motor.speed, said.load_torque.value];
-        self.estimates.cogging = self.learnt.learn_cogging(self.tables, seen);
+    fn update_cogging(&mut self) {
+        let Estimates { motor, load_torque, .. } = &self.estimates;
+        let motion = [motor.fraction, motor.speed, load_torque.value];
+        self.estimates.cogging = self.estimator.update_cogging(self.tables, motion);
     }
 
     /// Recomputes the position-dependent errors (maps and transmission error) from the shaft positions.
-    fn find_errors(&mut self) {
-        let both = self.health.both_encoders();
-        self.learnt.find_errors(self.tables, &self.sensors, &self.filters, both);
+    fn update_position_errors(&mut self) {
+        let both_encoders = self.health.both_encoders();
+        self.estimator.update_position_errors(self.tables, &self.sensors, &self.filters, both_encoders);
     }
 
     /// Publishes the estimates of a period.
     #[inline]
-    fn say(&mut self, fused: &Fused<T>) {
-        let state = outputs::State {
+    fn publish(&mut self, measurement: &MeshMeasurement<T>) {
+        let state = outputs::ObserverParts {
             tables: self.tables,
             sensors: &self.sensors,
             filters: &self.filters,
             contact: &self.contact,
-            learnt: &self.learnt,
+            estimator: &self.estimator,
             health: &self.health,
         };
-        state.say(fused, &mut self.estimates);
+        state.publish(measurement, &mut self.estimates);
     }
 
     /// Publishes the estimates that change once per learning interval.
-    fn say_learnt(&mut self) {
-        let both = self.health.both_encoders();
-        outputs::say_learnt(self.tables, &self.learnt, both, &mut self.estimates);
+    fn publish_parameters(&mut self) {
+        let both_encoders = self.health.both_encoders();
+        outputs::publish_parameters(self.tables, &self.estimator, both_encoders, &mut self.estimates);
     }
 }

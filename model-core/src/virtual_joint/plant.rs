@@ -241,7 +241,7 @@ fn reading<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> i64 {
 /// so that the shaft sticks.
 fn friction<T: Real>(table: &FrictionTable<T>, speed: T, driving: T, extra: T) -> T {
     let part = speed * table.per_speed;
-    let dry = table.coulomb + table.rise.over(T::ONE + part * part) + extra;
+    let dry = table.coulomb + table.rise / (T::ONE + part * part) + extra;
     let viscous = table.viscous * speed;
     viscous + clamp(table.stop * speed + driving - viscous, -dry, dry)
 }

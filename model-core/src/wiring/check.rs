@@ -14,37 +14,18 @@
 //! | brake | against the motion | the motion is over | rest; the next leg |
 //! | any | | motor or output is beyond the travel limit | refused |
 
+use super::thresholds::{CHECK, JUDGE};
 use core::fmt;
 
 use super::judge::WiringJudge;
 use super::tables::WiringTable;
+use super::track::difference;
 use super::verdict::Wiring;
 use crate::numbers::Real;
 use crate::observer::Samples;
 
-/// Legs of a check: two in each direction, to separate dry friction from torque and lost motion from ratio.
-const LEGS: u8 = 4;
-
-/// Additional brakings after a leg.
-const BRAKINGS: u8 = 4;
-
-/// Largest flicker of a shaft at rest during a rest [counts].
-const RESTS: i64 = 4;
-
-/// Largest creep of a shaft at rest during a rest, over a leg, as a negative power of two.
-const CREEPS: u32 = 5;
-
-/// Speed at which braking ends, over the speed at its beginning, as a negative power of two.
-const STOPS: u32 = 4;
-
 /// Limit of a travel [counts], so that products of travels fit.
-const MOST_COUNTS: u64 = u32::MAX as u64;
-
-/// Largest motor travel, over its limit, while the output lags behind the ratio.
-const MOST_TIMES: u64 = 3;
-
-/// Travel above which a shaft has certainly moved [counts].
-const MOVED: i64 = 8;
+const MAX_COUNTS: u64 = u32::MAX as u64;
 
 /// Reason for a check that ended before its last leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,19 +104,19 @@ pub struct WiringCheck<'tables, T: Real> {
     /// Periods since the beginning, in this state, at the allowed torque, and in this window.
     total: u32,
     periods: u32,
-    held: u32,
+    held_periods: u32,
     window: u32,
     /// Magnitude of the torque, and its direction: 1 or -1.
-    size: T,
+    torque_magnitude: T,
     direction: i32,
     /// Positions at the beginning of the leg or rest, and of the window.
-    from: [i64; 2],
-    mark: [i64; 2],
-    /// `watches_output`: braking watches the output, otherwise the motor. `sense`: direction of the braked motion.
-    /// `fast`: counts of the watched shaft in the last window of the push.
+    start: [i64; 2],
+    window_start: [i64; 2],
+    /// `watches_output`: braking watches the output, otherwise the motor. `motion_sign`: direction of the braked
+    /// motion. `window_travel`: counts of the watched shaft in the last window of the push.
     watches_output: bool,
-    sense: i64,
-    fast: i64,
+    motion_sign: i64,
+    window_travel: i64,
     torque: T,
 }
 
@@ -150,15 +131,15 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
             brakings: 0,
             total: 0,
             periods: 0,
-            held: 0,
+            held_periods: 0,
             window: 0,
-            size: T::ZERO,
+            torque_magnitude: T::ZERO,
             direction: 1,
-            from: [0; 2],
-            mark: [0; 2],
+            start: [0; 2],
+            window_start: [0; 2],
             watches_output: false,
-            sense: 0,
-            fast: 0,
+            motion_sign: 0,
+            window_travel: 0,
             torque: T::ZERO,
         }
     }
@@ -176,13 +157,13 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         if self.is_running() && self.total > self.table.longest {
             self.state = State::Refused(WiringRefusal::TooLong);
         }
-        let least = |one: T, other: T| if one < other { one } else { other };
+        let smaller = |one: T, other: T| if one < other { one } else { other };
         // The comparison also turns NaN into zero.
-        let allowed = if allowed > T::ZERO { least(allowed, self.table.torque_limit) } else { T::ZERO };
+        let allowed = if allowed > T::ZERO { smaller(allowed, self.table.torque_limit) } else { T::ZERO };
         if is_new && self.is_running() {
             self.advance(allowed);
         }
-        self.size = least(self.size, allowed);
+        self.torque_magnitude = smaller(self.torque_magnitude, allowed);
         let progress = match self.state {
             State::Done => WiringProgress::Done(self.judge.wiring()),
             State::Refused(refusal) => WiringProgress::Refused(refusal),
@@ -191,7 +172,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
                 return (T::ZERO, WiringProgress::Running);
             }
             State::Push | State::Brake => {
-                self.torque = T::from_i32(self.direction) * self.size;
+                self.torque = T::from_i32(self.direction) * self.torque_magnitude;
                 return (self.torque, WiringProgress::Running);
             }
         };
@@ -204,16 +185,16 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
     }
 
     fn advance(&mut self, allowed: T) {
-        let places = [self.judge.motor.position, self.judge.output.position];
-        if self.is_far(places, self.table.limit) {
+        let positions = [self.judge.motor.position, self.judge.output.position];
+        if self.is_far(positions, self.table.limit) {
             self.state = State::Refused(WiringRefusal::TooFar);
             return;
         }
         self.periods = self.periods.saturating_add(1);
         match self.state {
-            State::Rest => self.rest(places),
-            State::Push => self.push(places, allowed),
-            State::Brake => self.brake(places),
+            State::Rest => self.rest(positions),
+            State::Push => self.push(positions, allowed),
+            State::Brake => self.brake(positions),
             State::Done | State::Refused(_) => {}
         }
     }
@@ -221,97 +202,99 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
     /// Returns true if the joint has moved by a limit. Wrong counts per turn overstate or understate a travel, so that
     /// the geometric mean of both travels decides; it is right even for exchanged encoders. A motor without an output,
     /// or beside a stationary output, has its own limit.
-    fn is_far(&self, moved: [i64; 2], limit: [u32; 2]) -> bool {
-        let [motor, output] = moved.map(|by| by.unsigned_abs().min(MOST_COUNTS));
+    fn is_far(&self, travel: [i64; 2], limit: [u32; 2]) -> bool {
+        let [motor, output] = travel.map(|counts| counts.unsigned_abs().min(MAX_COUNTS));
         let [motor_limit, output_limit] = limit.map(u64::from);
-        let stands = [motor, output].map(|by| by <= MOVED.unsigned_abs());
+        let stands = [motor, output].map(|counts| counts <= JUDGE.min_motion.unsigned_abs());
         let alone = (stands[1] && motor >= motor_limit) || (stands[0] && output >= output_limit);
         let both = motor.saturating_mul(output) >= motor_limit.saturating_mul(output_limit);
-        alone || both || motor >= motor_limit.saturating_mul(MOST_TIMES)
+        alone || both || motor >= motor_limit.saturating_mul(CHECK.unmatched_travel_factor)
     }
 
-    fn enter(&mut self, state: State, places: [i64; 2]) {
+    fn enter(&mut self, state: State, positions: [i64; 2]) {
         self.state = state;
-        (self.periods, self.held, self.window) = (0, 0, 0);
-        (self.from, self.mark) = (places, places);
+        (self.periods, self.held_periods, self.window) = (0, 0, 0);
+        (self.start, self.window_start) = (positions, positions);
     }
 
-    fn rest(&mut self, places: [i64; 2]) {
+    fn rest(&mut self, positions: [i64; 2]) {
         if self.periods < self.table.rest {
             return;
         }
-        let moved = by(places, self.from);
-        let creeps = |shaft: usize| {
-            let most = RESTS.saturating_add(i64::from(at(self.table.leg, shaft) >> CREEPS));
-            at(moved, shaft).saturating_abs() > most
+        let travel = difference(positions, self.start);
+        let is_creeping = |shaft: usize| {
+            let max_creep =
+                CHECK.rest_flicker.saturating_add(i64::from(of_shaft(self.table.leg, shaft) >> CHECK.creep_shift));
+            of_shaft(travel, shaft).saturating_abs() > max_creep
         };
         let watched = usize::from(self.watches_output);
-        if self.leg == 0 && self.sense == 0 {
-            if creeps(0) || creeps(1) {
+        if self.leg == 0 && self.motion_sign == 0 {
+            if is_creeping(0) || is_creeping(1) {
                 self.state = State::Refused(WiringRefusal::NotAtRest);
                 return;
             }
-        } else if creeps(watched) && self.brakings > 0 {
+        } else if is_creeping(watched) && self.brakings > 0 {
             // A shaft still moves: brake it, with the torque direction that the leg has shown.
             self.brakings -= 1;
-            let goes = at(moved, watched).signum();
-            if goes != self.sense {
+            let motion = of_shaft(travel, watched).signum();
+            if motion != self.motion_sign {
                 self.direction = -self.direction;
             }
-            self.sense = goes;
-            self.size *= T::QUARTER;
+            self.motion_sign = motion;
+            self.torque_magnitude *= T::QUARTER;
             let windows = i64::from(self.table.rest.checked_div(self.table.window).unwrap_or(1).max(1));
-            self.fast = at(moved, watched).saturating_abs().checked_div(windows).unwrap_or(0);
-            self.enter(State::Brake, places);
+            self.window_travel = of_shaft(travel, watched).saturating_abs().checked_div(windows).unwrap_or(0);
+            self.enter(State::Brake, positions);
             return;
-        } else if self.leg >= LEGS {
+        } else if self.leg >= CHECK.legs {
             self.state = State::Done;
             return;
         }
         self.direction = if self.leg & 1 == 0 { 1 } else { -1 };
         self.leg += 1;
-        self.size = T::ZERO;
-        self.brakings = BRAKINGS;
-        self.enter(State::Push, places);
+        self.torque_magnitude = T::ZERO;
+        self.brakings = CHECK.brakings;
+        self.enter(State::Push, positions);
     }
 
-    fn push(&mut self, places: [i64; 2], allowed: T) {
-        self.size += self.table.rise;
-        if self.size >= allowed {
-            self.size = allowed;
-            self.held = self.held.saturating_add(1);
+    fn push(&mut self, positions: [i64; 2], allowed: T) {
+        self.torque_magnitude += self.table.rise;
+        if self.torque_magnitude >= allowed {
+            self.torque_magnitude = allowed;
+            self.held_periods = self.held_periods.saturating_add(1);
         }
-        let moved = by(places, self.from);
-        let is_far = self.is_far(moved, self.table.leg);
-        let output_moved = at(moved, 1).saturating_abs() >= MOVED;
+        let travel = difference(positions, self.start);
+        let is_far = self.is_far(travel, self.table.leg);
+        let output_moved = of_shaft(travel, 1).saturating_abs() >= JUDGE.min_motion;
         let watched = usize::from(output_moved);
         let window_over = self.window_over();
         if window_over {
-            self.fast = at(by(places, self.mark), watched).saturating_abs();
-            self.mark = places;
+            self.window_travel = of_shaft(difference(positions, self.window_start), watched).saturating_abs();
+            self.window_start = positions;
         }
         if is_far {
             self.watches_output = output_moved;
-            self.sense = at(moved, watched).signum();
+            self.motion_sign = of_shaft(travel, watched).signum();
             self.direction = -self.direction;
-            self.enter(State::Brake, places);
-        } else if self.held > self.table.hold {
+            self.enter(State::Brake, positions);
+        } else if self.held_periods > self.table.hold {
             self.watches_output = output_moved;
-            self.sense = if self.sense == 0 { 1 } else { self.sense };
+            self.motion_sign = if self.motion_sign == 0 { 1 } else { self.motion_sign };
             self.brakings = 0;
-            self.enter(State::Rest, places);
+            self.enter(State::Rest, positions);
         }
     }
 
-    fn brake(&mut self, places: [i64; 2]) {
+    fn brake(&mut self, positions: [i64; 2]) {
         if !self.window_over() {
             return;
         }
-        let along = at(by(places, self.mark), usize::from(self.watches_output)).saturating_mul(self.sense);
-        self.mark = places;
-        let braked = along <= (self.fast >> STOPS).max(1);
+        let travel_along = of_shaft(difference(positions, self.window_start), usize::from(self.watches_output))
+            .saturating_mul(self.motion_sign);
+        self.window_start = positions;
+        let braked = travel_along <= (self.window_travel >> CHECK.stopped_shift).max(1);
         if braked || self.periods > self.table.hold {
-            self.enter(State::Rest, places);
+            self.enter(State::Rest, positions);
         }
     }
 
@@ -326,11 +309,6 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
     }
 }
 
-fn by(places: [i64; 2], from: [i64; 2]) -> [i64; 2] {
-    let ([motor, output], [motor_from, output_from]) = (places, from);
-    [motor.saturating_sub(motor_from), output.saturating_sub(output_from)]
-}
-
-fn at<V: Copy + Default>(of_shafts: [V; 2], shaft: usize) -> V {
+fn of_shaft<V: Copy + Default>(of_shafts: [V; 2], shaft: usize) -> V {
     of_shafts.get(shaft).copied().unwrap_or_default()
 }

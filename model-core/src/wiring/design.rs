@@ -3,82 +3,23 @@
 //! With the ratio `r`, the lost motion `l`, the encoders' errors `e` and an output travel `x`, motor over `r` and
 //! output agree within `(l/2 + e)/x` of the travel. The travel of the output is
 //!
-//! `x = TRAVEL (l/2 + e)` (1)
+//! `x = WIRING_DESIGN.travel (l/2 + e)` (1)
 //!
-//! so that the ratio is measured within `1/TRAVEL`. The torque rises by `U/RISE` per second up to the allowed torque;
-//! `U` is a fifth of the motor's limit. A joint with the inertia `J` at the motor breaks away at the time 0. At the
-//! time `t` its acceleration is `a = (U/RISE) t/J`, its speed `a t/2` and its travel `a t^2/6`. The opposite torque
-//! stops the motor after a further travel of `a t^2/8`, three quarters of the travel before. Braking from half of `x`
-//! therefore ends before `x`, with or without friction.
+//! so that the ratio is measured within `1/WIRING_DESIGN.travel`. The torque rises by `U/WIRING_DESIGN.rise` per second
+//! up to the allowed torque; `U` is a fifth of the motor's limit. A joint with the inertia `J` at the motor breaks away
+//! at the time 0. At the time `t` its acceleration is `a = (U/WIRING_DESIGN.rise) t/J`, its speed `a t/2` and its
+//! travel `a t^2/6`. The opposite torque stops the motor after a further travel of `a t^2/8`, three quarters of the
+//! travel before. Braking from half of `x` therefore ends before `x`, with or without friction.
 
 use crate::gears::design::DesignError;
 use crate::numbers::Real;
 use crate::observer::ObserverTables;
 use crate::observer::design::body::Body;
+use crate::observer::design::thresholds::PROBE_DESIGN;
 use crate::observer::design::{ObserverSettings, design_observer};
 use crate::wiring::tables::WiringTable;
+use crate::wiring::thresholds::WIRING_DESIGN;
 use parameters::JointParameters;
-
-/// Output travel over the slack between motor and output, equation (1) [-]: the ratio is measured within 4 %. Gears of
-/// neighbouring ratios are 7 % apart (5 and 14/3).
-const TRAVEL: f64 = 25.0;
-
-/// Least travel [counts of either encoder]: a travel is measured within 2 %.
-const COUNTS: f64 = 200.0;
-
-/// Least travel of a leading shaft, and of the other shaft if it had followed [counts].
-const LEADS: f64 = 8.0;
-
-/// Largest travel of the output [rad]: 14 degrees. Chosen.
-const FURTHEST: f64 = 0.25;
-
-/// Part of the travel at which the motor is braked [-].
-const BRAKED: f64 = 0.5;
-
-/// Travel of the output from the start at which the check ends, over the travel of a leg [-]: legs alternate, and
-/// friction of unequal size makes the legs drift.
-///
-/// An encoder with four times too few counts doubles the travel; this limit is larger.
-const LIMIT: f64 = 2.5;
-
-/// Part of the motor's limit that the check uses [-], as in the width probe.
-const USUAL_SHARE: f64 = 0.2;
-
-/// Least torque of the check [torque uncertainties], as in the width probe.
-const USUAL_UNCERTAINTIES: f64 = 8.0;
-
-/// Time in which the torque rises to its largest value [s]: long compared with a crossing of the gap, so that landings
-/// are soft.
-const RISE: f64 = 1.0;
-
-/// Torque that sets a joint in motion [torque uncertainties]: bias and dry friction of motor and link, two standard
-/// deviations.
-const FRICTION: f64 = 4.0;
-
-/// Change of speed over a block under the torque uncertainty [counts].
-const BLOCK_COUNTS: f64 = 8.0;
-
-/// Shortest and longest block [s].
-const BLOCK: [f64; 2] = [1e-3, 20e-3];
-
-/// Time without torque before each leg [s].
-const REST: f64 = 50e-3;
-
-/// Time over which a speed is measured [s].
-const WINDOW: f64 = 3e-3;
-
-/// Time at the full torque after which a leg ends [s].
-const HOLD: f64 = 0.5;
-
-/// Time after which the check ends [s].
-const LONGEST: f64 = 20.0;
-
-/// Tolerance of the ratio beside slack over travel [-]: backlash and compliance of the joint file are guesses.
-const RATIO_TOLERANCE: f64 = 0.02;
-
-/// Tolerance of the torque as a factor [-]: between 1 and 2.5, the factor between units that are mistaken for one
-/// another, as `identify` limits the inertia.
-const TORQUE_FACTOR: f64 = 1.6;
 
 /// Table of the wiring check.
 pub fn design_wiring<T: Real>(
@@ -100,13 +41,14 @@ pub fn design_wiring<T: Real>(
         + counts.motor.angle / body.ratio;
     let slack = 0.5 * lost_motion + errors;
     let count = counts.output.angle.max(counts.motor.angle / body.ratio);
-    let travel = (TRAVEL * slack).max(COUNTS * count).min(FURTHEST);
-    let torque = (USUAL_SHARE * settings.torque_limit)
-        .max(USUAL_UNCERTAINTIES * settings.torque_uncertainty)
+    let travel = (WIRING_DESIGN.travel * slack).max(WIRING_DESIGN.min_counts * count).min(WIRING_DESIGN.furthest);
+    let torque = (PROBE_DESIGN.usual_share * settings.torque_limit)
+        .max(PROBE_DESIGN.usual_uncertainties * settings.torque_uncertainty)
         .min(settings.torque_limit);
     let inertia = body.motor_inertia + body.load_inertia / (body.ratio * body.ratio);
     let acceleration = settings.torque_uncertainty / inertia;
-    let block = libm::sqrt(BLOCK_COUNTS * body.ratio * count / acceleration).clamp(BLOCK[0], BLOCK[1]);
+    let block = libm::sqrt(WIRING_DESIGN.block_counts * body.ratio * count / acceleration)
+        .clamp(WIRING_DESIGN.block[0], WIRING_DESIGN.block[1]);
     let block = periods(block).max(4);
     let square = (f64::from(block) * step).powi(2);
     let travels = |part: f64| {
@@ -127,21 +69,22 @@ pub fn design_wiring<T: Real>(
         slack: real(slack),
         lost_motion: real(lost_motion),
         play: real(2.0 * lost_motion + 2.0 * wind_up + 2.0 * errors),
-        ratio_tolerance: real(RATIO_TOLERANCE),
-        torque_factor: real(TORQUE_FACTOR),
+        ratio_tolerance: real(WIRING_DESIGN.ratio_tolerance),
+        torque_factor: real(WIRING_DESIGN.torque_factor),
         leads: {
             let out_in_motor = counts.output.angle * body.ratio / counts.motor.angle;
-            [out_in_motor, 1.0 / out_in_motor].map(|counts| libm::ceil(LEADS * counts.max(1.0)) as u32)
+            [out_in_motor, 1.0 / out_in_motor]
+                .map(|counts| libm::ceil(WIRING_DESIGN.lead_counts * counts.max(1.0)) as u32)
         },
-        leg: travels(BRAKED),
-        limit: travels(LIMIT),
-        rise: real(torque / RISE * step),
+        leg: travels(WIRING_DESIGN.braked),
+        limit: travels(WIRING_DESIGN.limit),
+        rise: real(torque / WIRING_DESIGN.rise * step),
         torque: real(torque),
         torque_limit: real(settings.torque_limit),
-        friction: real(FRICTION * settings.torque_uncertainty),
-        rest: periods(REST),
-        window: periods(WINDOW),
-        hold: periods(HOLD),
-        longest: periods(LONGEST),
+        friction: real(WIRING_DESIGN.friction * settings.torque_uncertainty),
+        rest: periods(WIRING_DESIGN.rest),
+        window: periods(WIRING_DESIGN.window),
+        hold: periods(WIRING_DESIGN.hold),
+        longest: periods(WIRING_DESIGN.longest),
     })
 }

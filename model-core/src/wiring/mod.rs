@@ -20,10 +20,11 @@ pub mod design;
 mod judge;
 mod line;
 pub mod tables;
+mod thresholds;
 mod track;
 mod verdict;
 
 pub use check::{WiringCheck, WiringProgress, WiringRefusal};
 pub use judge::WiringJudge;
 pub use tables::WiringTable;
-pub use verdict::{Verdict, WIRING_ITEMS, Wiring, WiringItem};
+pub use verdict::{WIRING_ITEMS, Wiring, WiringItem, WiringVerdict};

@@ -123,7 +123,7 @@ impl WiringItem {
 
 /// Verdict on one item.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum Verdict<T: Real> {
+pub enum WiringVerdict<T: Real> {
     /// The samples do not show the item.
     #[default]
     NotSeen,
@@ -136,7 +136,7 @@ pub enum Verdict<T: Real> {
     Suspect(T),
 }
 
-impl<T: Real> Verdict<T> {
+impl<T: Real> WiringVerdict<T> {
     /// Returns true if the item is wrong or suspect.
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Wrong(_) | Self::Suspect(_))
@@ -146,24 +146,24 @@ impl<T: Real> Verdict<T> {
 /// Verdicts on all items.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Wiring<T: Real> {
-    pub(super) verdicts: [Verdict<T>; WIRING_ITEMS],
+    pub(super) verdicts: [WiringVerdict<T>; WIRING_ITEMS],
     pub(super) has_output: bool,
 }
 
 impl<T: Real> Wiring<T> {
     /// Verdict on an item.
-    pub fn of(&self, item: WiringItem) -> Verdict<T> {
+    pub fn verdict(&self, item: WiringItem) -> WiringVerdict<T> {
         self.verdicts.get(item as usize).copied().unwrap_or_default()
     }
 
     /// Items with their verdicts.
-    pub fn iter(&self) -> impl Iterator<Item = (WiringItem, Verdict<T>)> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = (WiringItem, WiringVerdict<T>)> + '_ {
         WiringItem::ALL.into_iter().zip(self.verdicts)
     }
 
     /// Returns true if every item was seen and is right. Without an output encoder the items that need one are ignored.
     pub fn is_all_right(&self) -> bool {
-        self.iter().all(|(item, verdict)| verdict == Verdict::Right || (!self.has_output && item.needs_output()))
+        self.iter().all(|(item, verdict)| verdict == WiringVerdict::Right || (!self.has_output && item.needs_output()))
     }
 
     /// Returns true if no item is wrong or suspect.
@@ -171,7 +171,7 @@ impl<T: Real> Wiring<T> {
         !self.verdicts.iter().any(|verdict| verdict.is_bad())
     }
 
-    pub(super) fn set(&mut self, item: WiringItem, verdict: Verdict<T>) {
+    pub(super) fn set(&mut self, item: WiringItem, verdict: WiringVerdict<T>) {
         if let Some(place) = self.verdicts.get_mut(item as usize) {
             *place = verdict;
         }
@@ -184,10 +184,10 @@ impl<T: Real> fmt::Display for Wiring<T> {
         for (item, verdict) in self.iter() {
             let name = item.name();
             match verdict {
-                Verdict::Right => writeln!(out, "{name}: right")?,
-                Verdict::NotSeen => writeln!(out, "{name}: not seen")?,
-                Verdict::Wrong(found) => writeln!(out, "{name}: WRONG, found {found:?}: {}", item.help())?,
-                Verdict::Suspect(found) => writeln!(out, "{name}: SUSPECT, perhaps {found:?}: {}", item.help())?,
+                WiringVerdict::Right => writeln!(out, "{name}: right")?,
+                WiringVerdict::NotSeen => writeln!(out, "{name}: not seen")?,
+                WiringVerdict::Wrong(found) => writeln!(out, "{name}: WRONG, found {found:?}: {}", item.help())?,
+                WiringVerdict::Suspect(found) => writeln!(out, "{name}: SUSPECT, perhaps {found:?}: {}", item.help())?,
             }
         }
         Ok(())

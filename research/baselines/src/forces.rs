@@ -141,7 +141,7 @@ fn rational_tanh<T: Real>(x: T) -> T {
     let number = T::from_f64;
     let above = number(135_135.0) + square * (number(17_325.0) + square * (number(378.0) + square));
     let below = number(135_135.0) + square * (number(62_370.0) + square * (number(3_150.0) + square * number(28.0)));
-    (x * above).over(below)
+    (x * above) / below
 }
 
 /// Accelerations of the coordinates.

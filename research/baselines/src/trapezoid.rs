@@ -116,7 +116,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
             let planet_rate = rate.planets[i];
             let near = mesh(0, i, planet, planet_rate);
             let far = mesh(1, i, position.gap - planet, rate.gap - planet_rate);
-            inverse[i] = T::ONE.over(T::ONE + plant.planet * (near.per_acceleration + far.per_acceleration));
+            inverse[i] = T::ONE / (T::ONE + plant.planet * (near.per_acceleration + far.per_acceleration));
             driven[i] = inverse[i] * plant.planet * (far.given - near.given);
             by_gap[i] = inverse[i] * plant.planet * far.per_acceleration;
             sun[0] += near.given + near.per_acceleration * driven[i];
@@ -141,7 +141,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
             T::ONE + ring[1] * carrier.per_force + ring[2] * twice,
             ring[0] + ring[1] * apart + ring[2] * gap,
         ];
-        let determinant = T::ONE.over(sun_row[0] * ring_row[1] - sun_row[1] * ring_row[0]);
+        let determinant = T::ONE / (sun_row[0] * ring_row[1] - sun_row[1] * ring_row[0]);
         let sun_sum = determinant * (sun_row[2] * ring_row[1] - sun_row[1] * ring_row[2]);
         let ring_sum = determinant * (sun_row[0] * ring_row[2] - sun_row[2] * ring_row[0]);
         let carrier_acceleration = carrier.given + carrier.per_force * (sun_sum + ring_sum);
@@ -169,7 +169,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
         let [stiffness, damping] = plant.wind_up;
         let per_acceleration = half * (half * stiffness + damping);
         let given = stiffness * predicted.position.wind_up + damping * predicted.rate.wind_up;
-        let inverse = T::ONE.over(T::ONE + per_acceleration * (plant.carrier + plant.link));
+        let inverse = T::ONE / (T::ONE + per_acceleration * (plant.carrier + plant.link));
         let wind_up = LinearForce {
             given: inverse * (given + per_acceleration * (push.carrier - push.link)),
             per_acceleration: inverse * per_acceleration * plant.carrier,

@@ -126,7 +126,7 @@ impl<'a, T: Real> TwoMassPeer<'a, T> {
         }
         // Returns to the impact and leaves it with the rebound speed for the rest of the step. Rate and displacement have one sign here, so
         // the quotient is finite.
-        let since = (self.place - end).over(self.rate);
+        let since = (self.place - end) / self.rate;
         let since = if since < model.step { since } else { model.step };
         let leaving = -(model.restitution * (self.rate - since * self.push));
         self.rate = leaving + since * self.push;

@@ -6,35 +6,9 @@ use core::f64::consts::TAU;
 use super::body::Body;
 use super::filter::Filter;
 use super::settings::ObserverSettings;
+use super::thresholds::COGGING_DESIGN;
 use crate::numbers::Real;
 use crate::observer::tables::CoggingTable;
-
-/// Time constant t_s of the high-pass filter, applied twice, that removes slow changes of the load's own torque [s].
-/// Chosen.
-const SLOW: f64 = 20e-3;
-
-/// Least advance of the cogging phase within that time [rad]: the high-pass filter removes slower cogging.
-const LEAST: f64 = 0.6;
-
-/// Largest advance of the cogging phase in a learning interval, and from one motor count to the next [rad].
-const MOST: f64 = 1.0;
-
-/// Averaging time of the motor speed [s], and largest deviation from the averaged speed, over the speed [-]. The
-/// response holds for a constant cogging frequency, and torques of faster speed changes repeat from motion to motion as
-/// cogging does. Chosen.
-const STEADY: (f64, f64) = (50e-3, 0.3);
-
-/// Time on one flank after which the load torque has settled from the landing [s]. Chosen: as long as impacts ring.
-const SETTLED: f64 = 20e-3;
-
-/// Correlation length of the load torque's noise after the high-pass filter [learning intervals]. Chosen.
-const REPEATS: f64 = 5.0;
-
-/// Largest accepted sine or cosine amplitude, over the joint file's ripple [-]: three standard deviations.
-const LARGEST: f64 = 3.0;
-
-/// Averaging time of the noise variance [s]. Chosen.
-const WATCHED: f64 = 0.1;
 
 /// Computes the table of the motor's cogging; `span` is the length of a learning interval and `late` the lag of the
 /// motor side [s].
@@ -53,21 +27,22 @@ pub(super) fn table<T: Real>(
     let speed = load.gain[1] / step;
     let torque = -load.gain[2] * load.response[(1, 0)] / (step * step);
     // The cogging is estimated only if a motor count resolves its phase.
-    let told = periods * TAU / f64::from(settings.motor_encoder.counts_per_turn) <= MOST;
+    let is_resolved = periods * TAU / f64::from(settings.motor_encoder.counts_per_turn) <= COGGING_DESIGN.max_phase;
     let ripple = settings.torque_ripple * body.ratio;
     CoggingTable {
         periods: settings.cogging_periods,
-        settled_after: libm::ceil(SETTLED / span) as u32,
-        slow: part(SLOW),
-        slow_time: real(SLOW * periods),
-        speeds: [LEAST / SLOW, MOST / span].map(|frequency| real(frequency / periods)),
-        steady: part(STEADY.0),
-        unsteady: real(STEADY.1),
+        settled_after: libm::ceil(COGGING_DESIGN.settled_time / span) as u32,
+        slow: part(COGGING_DESIGN.slow_time),
+        slow_time: real(COGGING_DESIGN.slow_time * periods),
+        speeds: [COGGING_DESIGN.min_phase / COGGING_DESIGN.slow_time, COGGING_DESIGN.max_phase / span]
+            .map(|frequency| real(frequency / periods)),
+        steady: part(COGGING_DESIGN.speed_average),
+        unsteady: real(COGGING_DESIGN.unsteadiness),
         response: [periods * speed / torque, periods.powi(2) * angle / torque, periods.powi(3) / torque].map(real),
         late: real(periods * late / TAU * f64::powi(2.0, 32)),
-        prior: real(if told { ripple * ripple } else { 0.0 }),
-        limit: real(LARGEST * ripple),
-        repeats: real(REPEATS),
-        memory: part(WATCHED),
+        prior: real(if is_resolved { ripple * ripple } else { 0.0 }),
+        limit: real(COGGING_DESIGN.largest * ripple),
+        repeats: real(COGGING_DESIGN.correlated_intervals),
+        memory: part(COGGING_DESIGN.noise_average),
     }
 }

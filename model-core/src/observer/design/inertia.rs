@@ -3,33 +3,10 @@
 
 use super::body::Body;
 use super::filter::Filter;
-use super::learning::{LEARNING_INTERVAL, MEMORY};
 use super::settings::ObserverSettings;
+use super::thresholds::{INERTIA_DESIGN, LEARNING_DESIGN};
 use crate::numbers::Real;
 use crate::observer::tables::InertiaTable;
-
-/// Prior standard deviation of the mobility, the designed inertia over the link's inertia [-].
-const UNCERTAINTY: f64 = 0.3;
-
-/// Time constant of the high-pass filter that removes torques of a weight [s]: longer than a swing of the teeth after a
-/// landing, shorter than the link's turn through a tenth of a circle.
-const SLOW: f64 = 20e-3;
-
-/// Least fast torque for an update, over the motor's largest torque [-]: smaller torques show more noise than inertia.
-const LEAST: f64 = 0.05;
-
-/// Standard deviation of fast changes of the load torque itself, over the motor's largest torque [-].
-const RESTLESS: f64 = 0.01;
-
-/// Averaging time of the detection of external pushes [s].
-const RESTLESS_FOR: f64 = 0.5;
-
-/// Largest share of the noise variance that may remain after the high-pass filter [-]: a larger remainder means an
-/// external push.
-const LEFT: f64 = 0.5;
-
-/// Correlation length of the noise [learning intervals].
-const REPEATS: f64 = 10.0;
 
 /// Computes the table of the link's inertia; `periods` is the length of a learning interval.
 pub(super) fn table<T: Real>(
@@ -43,10 +20,13 @@ pub(super) fn table<T: Real>(
     let span = f64::from(periods) * step;
     // Angle, speed and torque after an interval, from their initial values and the mesh torque.
     let after = |start: [f64; 3], given: f64| {
-        (0..periods).fold(start, |[angle, speed, taken], _| {
-            let net = given - taken;
-            let ahead =
-                [angle + step * speed + load.response[(0, 0)] * net, speed + load.response[(1, 0)] * net, taken];
+        (0..periods).fold(start, |[angle, speed, disturbance_torque], _| {
+            let net = given - disturbance_torque;
+            let ahead = [
+                angle + step * speed + load.response[(0, 0)] * net,
+                speed + load.response[(1, 0)] * net,
+                disturbance_torque,
+            ];
             let innovation = -ahead[0];
             [0, 1, 2].map(|state| ahead[state] + load.gain[state] * innovation)
         })
@@ -54,20 +34,22 @@ pub(super) fn table<T: Real>(
     let columns =
         [after([1.0, 0.0, 0.0], 0.0), after([0.0, 1.0, 0.0], 0.0), after([0.0, 0.0, 1.0], 0.0), after([0.0; 3], 1.0)];
     let largest = settings.torque_limit * body.ratio;
-    let noise = load.quiet[2] + (RESTLESS * largest).powi(2);
+    let noise = load.quiet[2] + (INERTIA_DESIGN.load_noise * largest).powi(2);
     InertiaTable {
         per_periods: real(1.0 / f64::from(periods)),
         still: [0, 1, 2].map(|row| columns.map(|column| real(column[row]))),
-        slow: real(-libm::expm1(-span / SLOW)),
+        slow: real(-libm::expm1(-span / INERTIA_DESIGN.slow_time)),
         moving: real(3.0 * libm::sqrt(load.quiet[1])),
-        settled_after: libm::ceil(3.0 * SLOW / span) as u32,
-        least: real(LEAST * largest),
-        noise: real(REPEATS * noise),
-        most_restless: real(LEFT * noise),
-        memory: real(-libm::expm1(-span / RESTLESS_FOR)),
-        prior: real(UNCERTAINTY * UNCERTAINTY),
-        limit: real(3.0 * UNCERTAINTY),
-        known: real(0.25 * UNCERTAINTY * UNCERTAINTY),
-        drift: real(UNCERTAINTY * UNCERTAINTY * LEARNING_INTERVAL / MEMORY),
+        settled_after: libm::ceil(3.0 * INERTIA_DESIGN.slow_time / span) as u32,
+        least: real(INERTIA_DESIGN.min_torque * largest),
+        noise: real(INERTIA_DESIGN.correlated_intervals * noise),
+        most_restless: real(INERTIA_DESIGN.external_share * noise),
+        memory: real(-libm::expm1(-span / INERTIA_DESIGN.external_average)),
+        prior: real(INERTIA_DESIGN.uncertainty * INERTIA_DESIGN.uncertainty),
+        limit: real(3.0 * INERTIA_DESIGN.uncertainty),
+        known: real(0.25 * INERTIA_DESIGN.uncertainty * INERTIA_DESIGN.uncertainty),
+        drift: real(
+            INERTIA_DESIGN.uncertainty * INERTIA_DESIGN.uncertainty * LEARNING_DESIGN.interval / LEARNING_DESIGN.memory,
+        ),
     }
 }

@@ -41,7 +41,7 @@ mod tests {
     use super::Weights;
 
     #[test]
-    fn whole_turns_of_a_rigid_joint_leave_no_difference() {
+    fn whole_turns_leave_no_difference() {
         for (motor_turn, output_turn, over, under) in [
             (1 << 14, 1 << 17, 90, 15),
             (20_000, 1 << 18, 126, 27),
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_of_too_many_units_are_refused() {
+    fn turn_of_too_many_units_is_refused() {
         assert!(Weights::new(16_777_213, 16_777_183, 99_999_989, 100_003).is_none());
     }
 }

@@ -2,19 +2,19 @@
 
 pub(crate) mod body;
 mod cogging;
+#[cfg(test)]
+mod dwell_noise_tests;
 mod filter;
+#[cfg(test)]
+mod gap_variation_tests;
 mod inertia;
 mod integers;
-mod learning;
-#[cfg(test)]
-mod places_tests;
 mod probe;
-#[cfg(test)]
-mod rest_noise_tests;
 mod settings;
 mod sides;
 mod source;
 mod tables;
+pub(crate) mod thresholds;
 
 pub use probe::{design_probe, design_usual_probe};
 pub(crate) use settings::NO_LIMIT;

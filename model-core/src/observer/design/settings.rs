@@ -1,8 +1,8 @@
 //! Settings of the observer besides the joint: data-sheet figures with their uncertainties, and checks of their ranges.
 
+use super::thresholds::LEARNING_DESIGN;
 use core::f64::consts::TAU;
 
-use super::learning::LEARNING_INTERVAL;
 use crate::gears::design::DesignError;
 use crate::observer::tables::MOST_DELAY;
 use parameters::{AbsoluteEncoder, Surroundings};
@@ -77,11 +77,17 @@ pub struct ObserverSettings {
 impl ObserverSettings {
     /// Rejects settings out of range; `gap` is the lost motion at the motor [rad].
     pub(super) fn check(&self, gap: f64) -> Result<(), DesignError> {
-        let within = |what, given: f64, least: f64, most: f64, must_be| {
-            if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
+        let within = |what, given: f64, min: f64, max: f64, must_be| {
+            if given >= min && given <= max { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
         };
         // A learning interval contains at least one period.
-        within("the control rate", self.control_rate.into(), 1.0 / LEARNING_INTERVAL, 1e5, "from 1000 to 100000 Hz")?;
+        within(
+            "the control rate",
+            self.control_rate.into(),
+            1.0 / LEARNING_DESIGN.interval,
+            1e5,
+            "from 1000 to 100000 Hz",
+        )?;
         within("the clock rate of the observer's samples", self.clock_rate.into(), 1e4, 4e9, "10 kHz or more")?;
         self.check_counts(gap)?;
         for encoder in [Some(self.motor_encoder), self.output_encoder].into_iter().flatten() {
@@ -109,15 +115,15 @@ impl ObserverSettings {
     /// Rejects encoders with too few or too many counts. A motor encoder with few counts detects the flanks as long as
     /// a count is less than the lost motion at the motor: Hall sensors with 24 counts need 15 deg of lost motion.
     fn check_counts(&self, gap: f64) -> Result<(), DesignError> {
-        let within = |what, counts: u32, least, must_be| {
-            let is_in_range = (least..=1 << 24).contains(&counts);
+        let within = |what, counts: u32, min, must_be| {
+            let is_in_range = (min..=1 << 24).contains(&counts);
             if is_in_range { Ok(()) } else { Err(DesignError::OutOfRange { what, given: counts.into(), must_be }) }
         };
         let motor = self.motor_encoder.counts_per_turn;
-        let least = if TAU < gap * f64::from(motor) { FEWEST_COUNTS } else { COUNTS_OF_ANY_GAP };
+        let min = if TAU < gap * f64::from(motor) { FEWEST_COUNTS } else { COUNTS_OF_ANY_GAP };
         let must_be = "from 64 to 2^24, or from 24 on where a count is less than the lost motion at the motor: \
                        take an encoder of more counts, or state a larger backlash if the gear has it";
-        within("the number of counts in a turn of the motor encoder", motor, least, must_be)?;
+        within("the number of counts in a turn of the motor encoder", motor, min, must_be)?;
         self.output_encoder.map_or(Ok(()), |encoder| {
             let what = "the number of counts in a turn of the output encoder";
             within(what, encoder.counts_per_turn, COUNTS_OF_ANY_GAP, "from 64 to 2^24")

@@ -5,37 +5,18 @@ use nalgebra::{DMatrix, DVector};
 use super::body::Body;
 use super::filter::{Filter, System};
 use super::settings::ObserverSettings;
+use super::thresholds::{FILTER_DESIGN, TORQUE_DESIGN};
 use crate::gears::design::exponential::flow;
 use crate::numbers::Real;
 use crate::observer::tables::{CurrentTable, DriveTable};
 
-/// Time in which the load torque changes by the motor's largest torque at the output, one standard deviation [s].
-/// Friction at a reversal and collisions are faster, gravity is slower; the filter follows friction and collisions with
-/// a lag of a few milliseconds.
-const LOAD_CHANGE: f64 = 3.0;
-
-/// Shortest half swing of motor against load that the motor side follows [control periods].
-const FASTEST_SWING: f64 = 20.0;
-
-/// Change of the mesh force in half a swing of motor against load, over the motor's largest torque [-].
-const MESH_CHANGE: f64 = 0.2;
-
-/// Error of the mesh force for about a millisecond after an impact, over the motor's largest torque [-].
-const IMPACT_ERROR: f64 = 0.05;
-
-/// Duration of the error after an impact [s].
-const IMPACT: f64 = 1e-3;
-
-/// Rate of all three poles of the motor side while its readings are late [rad/s]: swings of the teeth, which the
-/// prediction cannot foresee, must not be extrapolated.
-const LATE_POLES: f64 = 1000.0;
-
 /// Motor-side filter with the states angle, speed and taken torque. The taken torque is a random walk that changes by
-/// `MESH_CHANGE` of the largest torque in half a swing of motor against load; the torque noise acts on the speed.
+/// `FILTERS.mesh_change` of the largest torque in half a swing of motor against load; the torque noise acts on the
+/// speed.
 pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.motor_inertia;
     // Faster swings are not followed: the noise would cost more than the bandwidth gains.
-    let half_swing = (core::f64::consts::PI / body.contact_frequency()).max(FASTEST_SWING * step);
+    let half_swing = (core::f64::consts::PI / body.contact_frequency()).max(FILTER_DESIGN.shortest_half_swing * step);
     let torque_noise = settings.torque_noise_ratio * settings.torque_limit;
     System {
         dynamics: DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, -per_inertia, 0.0, 0.0, 0.0]),
@@ -43,16 +24,16 @@ pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, measurement
         process_noise: DVector::from_vec(std::vec![
             0.0,
             (torque_noise * per_inertia).powi(2) * step,
-            (MESH_CHANGE * settings.torque_limit).powi(2) / half_swing,
+            (FILTER_DESIGN.mesh_change * settings.torque_limit).powi(2) / half_swing,
         ]),
         measurement_noise,
     }
     .filter(step)
 }
 
-/// Gains for readings older than a period (O3): all poles at `LATE_POLES`.
+/// Gains for readings older than a period (O3): all poles at `FILTERS.late_poles`.
 fn late_gain(body: &Body, step: f64) -> [f64; 3] {
-    let left = libm::exp(-LATE_POLES * step);
+    let left = libm::exp(-FILTER_DESIGN.late_poles * step);
     let gone = 1.0 - left;
     [1.0 - left.powi(3), 1.5 * gone * gone * (1.0 + left) / step, -body.motor_inertia * gone.powi(3) / (step * step)]
 }
@@ -66,11 +47,15 @@ pub(super) fn drive_lag(body: &Body, filter: &Filter, step: f64) -> f64 {
 /// Load-side filter with the states angle, speed and load torque.
 pub(super) fn load_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.load_inertia;
-    let impact = IMPACT_ERROR * settings.torque_limit * body.ratio * per_inertia;
+    let impact = FILTER_DESIGN.impact_error * settings.torque_limit * body.ratio * per_inertia;
     System {
         dynamics: DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, -per_inertia, 0.0, 0.0, 0.0]),
         inputs: DMatrix::from_row_slice(3, 1, &[0.0, per_inertia, 0.0]),
-        process_noise: DVector::from_vec(std::vec![0.0, impact * impact * IMPACT, load_change(body, settings),]),
+        process_noise: DVector::from_vec(std::vec![
+            0.0,
+            impact * impact * FILTER_DESIGN.impact_time,
+            load_change(body, settings),
+        ]),
         measurement_noise,
     }
     .filter(step)
@@ -78,7 +63,7 @@ pub(super) fn load_filter(body: &Body, settings: &ObserverSettings, measurement_
 
 /// Spectral density of the load torque's changes.
 fn load_change(body: &Body, settings: &ObserverSettings) -> f64 {
-    (settings.torque_limit * body.ratio).powi(2) / LOAD_CHANGE
+    (settings.torque_limit * body.ratio).powi(2) / FILTER_DESIGN.load_change_time
 }
 
 /// Flow of the motor with its current loop: the air-gap torque approaches the wanted torque.
@@ -117,13 +102,6 @@ pub(super) fn drive_table<T: Real>(
     }
 }
 
-/// Torque above which a sample is rejected, over the motor's limit [-]: above noise and a controller's overshoot.
-const BELIEVED: f64 = 2.0;
-
-/// Time after a rejected torque sample in which the filters may still be wrong [s]. Chosen: several times the slowest
-/// time constant of the filters.
-const UNSURE_FOR: f64 = 20e-3;
-
 pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> CurrentTable<T> {
     let whole = libm::floor(settings.torque_delay);
     let rise = if settings.torque_lag > 0.0 { -libm::expm1(-step / settings.torque_lag) } else { 1.0 };
@@ -131,8 +109,8 @@ pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> Curren
         whole_delay: whole as u32,
         part_delay: T::from_f64(settings.torque_delay - whole),
         rise: T::from_f64(rise),
-        believed: T::from_f64(BELIEVED * settings.torque_limit),
-        unsure_for: (UNSURE_FOR / step) as u16,
+        believed: T::from_f64(TORQUE_DESIGN.largest * settings.torque_limit),
+        unsure_for: (TORQUE_DESIGN.uncertain_time / step) as u16,
     }
 }
 
@@ -142,7 +120,7 @@ mod tests {
     use crate::observer::design::settings::{EncoderSettings, ObserverSettings};
 
     #[test]
-    fn the_motor_side_lags_behind_a_steady_rise_by_as_much_as_it_says() {
+    fn drive_lag_equals_lag_of_filter() {
         let body = Body {
             sun_lever: 7e-3,
             output_lever: 42e-3,
@@ -179,19 +157,19 @@ mod tests {
         let count = core::f64::consts::TAU / f64::from(encoder.counts_per_turn);
         let filter = drive_filter(&body, &settings, count * count / 12.0, step);
         let (inertia, gain) = (body.motor_inertia, &filter.gain);
-        let [mut angle, mut speed, mut taken] = [0.0; 3];
+        let [mut angle, mut speed, mut disturbance_torque] = [0.0; 3];
         let mut time = 0.0;
         for _ in 0..2000 {
             // No torque drives; the taken torque equals the time.
             time += step;
-            angle += step * speed - 0.5 * step * step / inertia * taken;
-            speed -= step / inertia * taken;
+            angle += step * speed - 0.5 * step * step / inertia * disturbance_torque;
+            speed -= step / inertia * disturbance_torque;
             let innovation = -time.powi(3) / (6.0 * inertia) - angle;
             angle += gain[0] * innovation;
             speed += gain[1] * innovation;
-            taken += gain[2] * innovation;
+            disturbance_torque += gain[2] * innovation;
         }
-        let lag = time - taken;
+        let lag = time - disturbance_torque;
         assert!(lag > step && (drive_lag(&body, &filter, step) / lag - 1.0).abs() < 1e-6, "it lags by {lag} s");
     }
 }

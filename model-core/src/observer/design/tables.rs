@@ -2,14 +2,17 @@
 //!
 //! No gain is set by hand. Both filters are steady-state Kalman filters for the encoders' quantisation (O5) and the
 //! rates of torque changes; the parameter estimation starts from the stated uncertainties; thresholds are multiples of
-//! the resulting noise, or the times and fractions named below.
+//! the resulting noise, or the times and fractions of `thresholds`.
 
 use core::f64::consts::TAU;
 
 use super::body::Body;
-use super::learning::{BLOCK, LEARNING_INTERVAL, MEMORY, WINDOW};
+use super::filter::Filter;
 use super::settings::{EncoderSettings, ObserverSettings};
 use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
+use super::thresholds::{
+    BIAS_DESIGN, CLOCK_DESIGN, CONTACT_DESIGN, LEARNING_DESIGN, RESPONSE_DESIGN, ROUNDING_DESIGN, SUPERVISION_DESIGN,
+};
 use super::{cogging, inertia, integers};
 use crate::gears::Kinematics;
 use crate::gears::design::{DesignError, validate};
@@ -19,114 +22,6 @@ use crate::observer::tables::{
     ObserverTables, ResponseTable, StopTable, SupervisorTable,
 };
 use parameters::JointParameters;
-
-/// Shortest and longest control period on the samples' clock without a lost period [control periods].
-const PERIOD_TO_PERIOD: [f64; 2] = [0.5, 1.5];
-
-/// Age above which a reading counts as lost [control periods]: up to this age the torques since the reading are known
-/// well enough.
-const OLDEST: f64 = 10.0;
-
-/// Lag of the measured deflection at a landing, output filter included [control periods].
-const LAG: f64 = 3.0;
-
-/// Time outside the possible range after which a fault of the output encoder is declared [s]: longer than impacts ring.
-const FAILED_AFTER: f64 = 4e-3;
-
-/// Shortest time in which an obstacle stops a link, independent of the speed [s]: a quarter of a swing of 250 Hz. A
-/// link that is stopped faster, as by steel on steel, is mistaken for a frozen encoder: counts alone cannot distinguish
-/// the two (`docs/theory/observer.md`, Limits).
-const STOP: f64 = 1e-3;
-
-/// Largest braking torque of teeth and load on the link besides obstacles, over the motor's largest torque at the
-/// output [-].
-const BRAKE: f64 = 2.0;
-
-/// Time for which a stationary motor is judged by its last speed [s]. Chosen: noise accumulates over longer times.
-const MOTOR_REMEMBERED: f64 = 3e-3;
-
-/// Time of unchanged motor counts after which the deflection may exclude the motor encoder [s]: longer than repeated
-/// counts by noise, or the reversal of a motor.
-const MOTOR_UNMOVED: f64 = 1e-3;
-
-/// Time for which the readings of an excluded motor encoder must be plausible and agree with the output encoder before
-/// readmission [s]. Random counts are not plausible for three readings. Chosen.
-const MOTOR_TRUSTED: f64 = 20e-3;
-
-/// Time before readmission if the motor's counts stand still or have slipped [s]. Chosen.
-const MOTOR_SLIPPED: f64 = 100e-3;
-
-/// Travel that proves motion of an output encoder [counts]: above the flicker by noise.
-const MOVED_COUNTS: f64 = 4.0;
-
-/// Time without a fresh reading after which the output encoder is silent [s]. Chosen: longer than readings are
-/// lost by chance.
-const SILENT_AFTER: f64 = 10e-3;
-
-/// Time for which an excluded output encoder must agree with the motor before readmission [s]. Chosen: longer than the
-/// link's swings after a fault.
-const TRUSTED_AFTER: f64 = 0.3;
-
-/// Margin of the deflection's possible range, over the half-gap and over the wind-up under the largest torque, for
-/// errors of maps and compliance [-]. Chosen.
-const MARGIN: f64 = 0.1;
-
-/// Largest standard deviation of a valid gap coordinate, over the gap [-]. Chosen.
-const WIDEST_PART: f64 = 0.1;
-
-/// Standard deviation of a flank's position, over the half-gap, below which positions decide on contact [-]: six
-/// standard deviations are half of the half-gap.
-const KNOWN_PART: f64 = 0.08;
-
-/// Share of the motor encoder's errors that remains after the error maps [-].
-const UNMODELLED: f64 = 0.1;
-
-/// Correlation length of cogging and noise [learning intervals]; inflates the variance of a bias measurement by 5.
-/// Chosen.
-const ALIKE: f64 = 5.0;
-
-/// Time in which bias and friction may change by their prior standard deviation [s]. Chosen: a motor warms up more
-/// slowly.
-const BIAS_KEPT: f64 = 10.0;
-
-/// Standard deviations treated as noise: of bias and friction, of a deflection at rest, of a speed [-].
-const BEYOND_NOISE: f64 = 3.0;
-
-/// Time constant of a mean over a few learning intervals [learning intervals]. Chosen.
-const FEW_INTERVALS: f64 = 1.5;
-
-/// Link speed v_w at which the rounding of an output reading counts as independent noise [rad/s]. At lower speed or
-/// with coarser encoders a count lasts longer than a period, and readings within one count share their rounding error.
-/// Chosen: a robot joint at work; at 10 kHz the variance grows below 15 bits.
-const LINK_AT_WORK: f64 = 2.0;
-
-/// Motor-side speed v_w, a link speed times the ratio, at which the rounding of a motor reading counts as independent
-/// noise [rad/s]. Tuned on hil/never-worse.toml: with 2 rad/s the RMS error with motor encoders of 12 bits on Q1 is 4 %
-/// larger in the mean of 250 seeds; with 3 rad/s the variance grows below 2^14.4/ratio counts at 10 kHz, so that 12
-/// bits keep their variance.
-const MOTOR_AT_WORK: f64 = 3.0;
-
-/// Least change of the angle per block, from block to block, by the largest torque [motor counts]: noise of a count
-/// causes a change of 3.
-const BLOCK_COUNTS: f64 = 24.0;
-
-/// Least change of the angle per block by the largest torque, over the gap at the motor [-]: rattling between
-/// the flanks causes a change of 1.
-const BLOCK_GAPS: f64 = 4.0;
-
-/// Least length of a block, in periods of the swing of motor against link [-]: a swing must be over within a block.
-const BLOCK_SWINGS: f64 = 0.5;
-
-/// Shortest and longest block in which torque and acceleration are compared [s]: longer than the ringing of teeth,
-/// short enough to detect a runaway joint soon.
-const RESPONSE_BLOCK: [f64; 2] = [2e-3, 30e-3];
-
-/// Least length of a block [control periods]: a torque acts after one to three periods.
-const BLOCK_PERIODS: f64 = 8.0;
-
-/// Torque, and change of torque, that suffices for a vote, over the motor's largest torque [-]: above friction and
-/// bias.
-const LARGE_TORQUE: f64 = 0.25;
 
 /// Slope of a once- and a twice-per-turn error of equal size together, over that size: sqrt(1 + 2^2).
 const HARMONIC_SLOPE: f64 = 2.2;
@@ -139,151 +34,245 @@ pub fn design_observer<T: Real>(
     validate(joint)?;
     let body = Body::new(joint);
     settings.check(body.gap_at_motor())?;
-    let real = T::from_f64;
     let step = 1.0 / f64::from(settings.control_rate);
     let counts = counts::<T>(joint, settings, step)?;
-    let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
-    let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
-    let drive = drive_filter(&body, settings, rounding(motor_count, body.ratio * MOTOR_AT_WORK, step), step);
-    let load = load_filter(&body, settings, rounding(output_count, LINK_AT_WORK, step), step);
-
-    let largest_force = settings.torque_limit / body.sun_lever;
-    let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
-    let periods = libm::round(LEARNING_INTERVAL / step).max(1.0);
-    let deflection_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
-    let ripple = settings.torque_ripple / body.sun_lever;
-    let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
-    let motor_only = load_filter(
-        &body,
-        settings,
-        (deflection_variance + body.compliance.powi(2) * (force_variance + ripple * ripple))
-            / body.output_lever.powi(2),
-        step,
-    );
-    let unmodelled = UNMODELLED * settings.motor_encoder.harmonic_error * body.sun_lever;
-    let noise = libm::sqrt(deflection_variance + wind_up_variance + unmodelled * unmodelled);
-    let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
-
-    let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
-    let stops = |stop: f64, forgotten: f64| StopTable {
-        stop: stop as u8,
-        forgotten: forgotten as u8,
-        per_stops: real(0.5 / stop),
-    };
-    let brake = |torque: f64, inertia: f64, count: f64| 0.5 * torque / inertia * step * step / count;
-    let half_gap = 2.0 * body.half_backlash;
-    let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
-        encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
-    };
-    let motor_harmonic = harmonics(Some(settings.motor_encoder), body.sun_lever);
-    let output_harmonic = harmonics(settings.output_encoder, body.output_lever);
-    let mut deviation = [0.0; MOST_PARAMETERS];
-    deviation[0] = half_gap * settings.backlash_uncertainty;
-    deviation[1] = 2.0 * half_gap + body.compliance * largest_force;
-    deviation[2] = body.compliance * settings.compliance_uncertainty;
-    deviation[3] = body.output_lever * settings.skew_uncertainty;
-    deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
-    deviation[6..10].fill(motor_harmonic);
-    deviation[10..14].fill(output_harmonic);
-    let mut mean = [0.0; MOST_PARAMETERS];
-    mean[0] = half_gap;
-    mean[2] = body.compliance;
-    mean[3] = body.output_lever * settings.skew;
-
-    let meshes = f64::from(joint.geometry.ring_teeth);
-    let tables = ObserverTables {
-        identity: mean
-            .iter()
-            .chain(&deviation)
-            .fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
+    let design = Design::new(joint, settings, body, step);
+    let Design { body, drive, load, periods, .. } = &design;
+    let prior = design.prior();
+    let numbers = prior.mean.iter().chain(&prior.deviation);
+    Ok(ObserverTables {
+        identity: numbers.fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
         control_rate: settings.control_rate,
-        period: real(step),
+        period: T::from_f64(step),
         clock: clock(step, settings.clock_rate),
         counts,
-        levers: LeverTable {
-            sun: real(body.sun_lever),
-            per_sun: real(1.0 / body.sun_lever),
-            output: real(body.output_lever),
-            per_output: real(1.0 / body.output_lever),
-            ratio: real(body.ratio),
-            per_ratio: real(1.0 / body.ratio),
-        },
+        levers: levers(body),
         current: current(settings, step),
-        drive: drive_table(&body, settings, &drive, step),
-        load: LoadTable {
-            angle: [real(step), real(load.response[(0, 0)])],
+        drive: drive_table(body, settings, drive, step),
+        load: design.load_table(),
+        inertia: inertia::table(load, settings, body, *periods as u32, step),
+        cogging: cogging::table(load, settings, body, [periods * step, drive_lag(body, drive, step)], step),
+        contact: design.contact_table(),
+        learner: design.learner_table(&prior),
+        supervisor: design.supervisor_table(),
+        response: response(body, settings, design.motor_count, step),
+    })
+}
+
+/// Filters of a joint, and the noise that they leave.
+struct Design<'a> {
+    joint: &'a JointParameters,
+    settings: &'a ObserverSettings,
+    body: Body,
+    /// Control period [s].
+    step: f64,
+    /// Angles of a count of motor and output [rad].
+    motor_count: f64,
+    output_count: f64,
+    drive: Filter,
+    load: Filter,
+    /// Control periods of a learning interval, and learning intervals of a batch.
+    periods: f64,
+    batch: f64,
+    /// Torque ripple as mesh force [N].
+    ripple: f64,
+    /// Noise variances of mesh force [N^2], deflection, and mean deflection by the force's wind-up [m^2].
+    force_variance: f64,
+    deflection_variance: f64,
+    wind_up_variance: f64,
+    /// Deviations of the harmonics of the encoders' errors [m].
+    motor_harmonic: f64,
+    output_harmonic: f64,
+}
+
+/// Prior of the estimated parameters.
+struct Prior {
+    mean: [f64; MOST_PARAMETERS],
+    deviation: [f64; MOST_PARAMETERS],
+}
+
+impl<'a> Design<'a> {
+    fn new(joint: &'a JointParameters, settings: &'a ObserverSettings, body: Body, step: f64) -> Self {
+        let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
+        let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
+        let motor_speed = body.ratio * ROUNDING_DESIGN.motor_speed;
+        let drive = drive_filter(&body, settings, rounding(motor_count, motor_speed, step), step);
+        let load = load_filter(&body, settings, rounding(output_count, ROUNDING_DESIGN.link_speed, step), step);
+        let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
+        let periods = libm::round(LEARNING_DESIGN.interval / step).max(1.0);
+        let ripple = settings.torque_ripple / body.sun_lever;
+        let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
+            encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
+        };
+        Self {
+            joint,
+            settings,
+            step,
+            motor_count,
+            output_count,
+            periods,
+            batch: libm::round(LEARNING_DESIGN.batch / LEARNING_DESIGN.interval).max(1.0),
+            ripple,
+            force_variance,
+            deflection_variance: drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2),
+            wind_up_variance: body.compliance.powi(2) * (force_variance / periods + ripple * ripple),
+            motor_harmonic: harmonics(Some(settings.motor_encoder), body.sun_lever),
+            output_harmonic: harmonics(settings.output_encoder, body.output_lever),
+            body,
+            drive,
+            load,
+        }
+    }
+
+    /// Largest mesh force of the motor [N].
+    fn largest_force(&self) -> f64 {
+        self.settings.torque_limit / self.body.sun_lever
+    }
+
+    /// Half-gap as designed [m].
+    fn half_gap(&self) -> f64 {
+        2.0 * self.body.half_backlash
+    }
+
+    fn prior(&self) -> Prior {
+        let Self { settings, body, .. } = self;
+        let mut deviation = [0.0; MOST_PARAMETERS];
+        deviation[0] = self.half_gap() * settings.backlash_uncertainty;
+        deviation[1] = 2.0 * self.half_gap() + body.compliance * self.largest_force();
+        deviation[2] = body.compliance * settings.compliance_uncertainty;
+        deviation[3] = body.output_lever * settings.skew_uncertainty;
+        deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
+        deviation[6..10].fill(self.motor_harmonic);
+        deviation[10..14].fill(self.output_harmonic);
+        let mut mean = [0.0; MOST_PARAMETERS];
+        mean[0] = self.half_gap();
+        mean[2] = body.compliance;
+        mean[3] = body.output_lever * settings.skew;
+        Prior { mean, deviation }
+    }
+
+    fn load_table<T: Real>(&self) -> LoadTable<T> {
+        let Self { body, load, force_variance, ripple, .. } = self;
+        let real = T::from_f64;
+        // Without an output encoder, the wind-up of the mesh force measures the link.
+        let measurement_noise = (self.deflection_variance
+            + body.compliance.powi(2) * (force_variance + ripple * ripple))
+            / body.output_lever.powi(2);
+        let motor_only = load_filter(body, self.settings, measurement_noise, self.step);
+        LoadTable {
+            angle: [real(self.step), real(load.response[(0, 0)])],
             speed: real(load.response[(1, 0)]),
             gain: [0, 1, 2].map(|state| real(load.gain[state])),
             variance: [real(load.variance[0]), real(load.variance[2])],
             motor_only_gain: [0, 1, 2].map(|state| real(motor_only.gain[state])),
             motor_only_variance: [real(motor_only.variance[1]), real(motor_only.variance[2])],
             deflection_per_torque: real(0.5 * body.output_lever / body.load_inertia),
-        },
-        inertia: inertia::table(&load, settings, &body, periods as u32, step),
-        cogging: cogging::table(&load, settings, &body, [periods * step, drive_lag(&body, &drive, step)], step),
-        contact: ContactTable {
-            force_variance: real(force_variance),
+        }
+    }
+
+    fn contact_table<T: Real>(&self) -> ContactTable<T> {
+        let Self { settings, body, drive, load, step, force_variance, deflection_variance, ripple, .. } = self;
+        let real = T::from_f64;
+        let sigma = CONTACT_DESIGN.noise_sigma;
+        let bias_prior = (settings.torque_uncertainty / body.sun_lever).powi(2);
+        let meshes = f64::from(self.joint.geometry.ring_teeth);
+        ContactTable {
+            force_variance: real(*force_variance),
             ripple_variance: real(ripple * ripple),
-            deflection_variance: real(deflection_variance),
-            bias_noise: real((force_variance + ripple * ripple) * ALIKE),
-            bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
-            bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / BIAS_KEPT),
-            bias_limit: real(BEYOND_NOISE * settings.torque_uncertainty / body.sun_lever),
-            still: real(BEYOND_NOISE * libm::sqrt(2.0 * (deflection_variance + wind_up_variance)) / WINDOW),
-            still_per_speed: real(
-                2.0 * (HARMONIC_SLOPE * motor_harmonic
-                    + (output_harmonic + meshes * body.transmission_error) / body.ratio),
+            deflection_variance: real(*deflection_variance),
+            bias_noise: real((force_variance + ripple * ripple) * BIAS_DESIGN.correlated_intervals),
+            bias_prior: real(bias_prior),
+            bias_drift: real(bias_prior * LEARNING_DESIGN.interval / BIAS_DESIGN.drift_time),
+            bias_limit: real(sigma * settings.torque_uncertainty / body.sun_lever),
+            still: real(
+                sigma * libm::sqrt(2.0 * (deflection_variance + self.wind_up_variance)) / LEARNING_DESIGN.window,
             ),
-            per_turning: real(1.0 / (BEYOND_NOISE * libm::sqrt(drive.quiet[1]))),
+            still_per_speed: real(
+                2.0 * (HARMONIC_SLOPE * self.motor_harmonic
+                    + (self.output_harmonic + meshes * body.transmission_error) / body.ratio),
+            ),
+            per_turning: real(1.0 / (sigma * libm::sqrt(drive.quiet[1]))),
             rate_deviation: real(libm::sqrt(
                 drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
             )),
-            lag: real(LAG * step),
-            smoothing: real(-libm::expm1(-step / (FEW_INTERVALS * LEARNING_INTERVAL))),
-            known_part: real(KNOWN_PART),
+            lag: real(CONTACT_DESIGN.landing_lag * step),
+            smoothing: real(-libm::expm1(-step / (CONTACT_DESIGN.smoothing_intervals * LEARNING_DESIGN.interval))),
+            known_part: real(CONTACT_DESIGN.known_half_gap),
             loss_driving: real(settings.efficiency - 1.0),
             loss_driven: real(1.0 / settings.efficiency - 1.0),
-        },
-        learner: LearnerTable {
-            periods: periods as u16,
+        }
+    }
+
+    fn learner_table<T: Real>(&self, prior: &Prior) -> LearnerTable<T> {
+        let Self { settings, body, step, periods, batch, ripple, .. } = self;
+        let real = T::from_f64;
+        let unmodelled = CONTACT_DESIGN.unmodelled_errors * settings.motor_encoder.harmonic_error * body.sun_lever;
+        let noise = libm::sqrt(self.deflection_variance + self.wind_up_variance + unmodelled * unmodelled);
+        LearnerTable {
+            periods: *periods as u16,
             per_periods: real(1.0 / periods),
-            middle: periods as u16 / 2 + 1,
-            block: block as u32,
-            per_block: real(1.0 / block),
+            middle: *periods as u16 / 2 + 1,
+            block: *batch as u32,
+            per_block: real(1.0 / batch),
             span: real(periods * step),
-            mean: mean.map(real),
-            deviation: deviation.map(real),
+            mean: prior.mean.map(real),
+            deviation: prior.deviation.map(real),
             weight: real(1.0 / noise),
             noise: real(noise),
-            force_noise: real(force_variance / (periods * block) + 0.5 * ripple * ripple),
-            force_lag: real(drive_lag(&body, &drive, step) / (periods * step)),
-            forgetting: real(LEARNING_INTERVAL / MEMORY),
+            force_noise: real(self.force_variance / (periods * batch) + 0.5 * ripple * ripple),
+            force_lag: real(drive_lag(body, &self.drive, *step) / (periods * step)),
+            forgetting: real(LEARNING_DESIGN.interval / LEARNING_DESIGN.memory),
             mesh_compliance: real(body.mesh_compliance),
-        },
-        supervisor: SupervisorTable {
-            silent_after: (SILENT_AFTER / step) as u16,
-            failed_after: (FAILED_AFTER / step) as u16,
-            output: stops(stop(STOP), stop(STOP)),
-            // Teeth stop the motor like a spring, in at least a quarter of a swing.
-            motor: stops(
-                libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0),
-                stop(MOTOR_REMEMBERED),
-            ),
-            output_brake: real(brake(BRAKE * settings.torque_limit * body.ratio, body.load_inertia, output_count)),
-            motor_brake: real(brake(1.0, body.motor_inertia, motor_count)),
-            motor_drag: real(BEYOND_NOISE * settings.torque_uncertainty),
+        }
+    }
+
+    fn supervisor_table<T: Real>(&self) -> SupervisorTable<T> {
+        let Self { settings, body, step, motor_count, output_count, .. } = self;
+        let real = T::from_f64;
+        let limits = SUPERVISION_DESIGN;
+        let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
+        let stops = |stop: f64, forgotten: f64| StopTable {
+            stop: stop as u8,
+            forgotten: forgotten as u8,
+            per_stops: real(0.5 / stop),
+        };
+        let brake = |torque: f64, inertia: f64, count: f64| 0.5 * torque / inertia * step * step / count;
+        let link_brake = limits.link_brake * settings.torque_limit * body.ratio;
+        // Teeth stop the motor like a spring, in at least a quarter of a swing.
+        let motor_stop = libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0);
+        SupervisorTable {
+            silent_after: (limits.output_silence / step) as u16,
+            failed_after: (limits.output_fault_time / step) as u16,
+            output: stops(stop(limits.link_stop_time), stop(limits.link_stop_time)),
+            motor: stops(motor_stop, stop(limits.motor_speed_kept)),
+            output_brake: real(brake(link_brake, body.load_inertia, *output_count)),
+            motor_brake: real(brake(1.0, body.motor_inertia, *motor_count)),
+            motor_drag: real(CONTACT_DESIGN.noise_sigma * settings.torque_uncertainty),
             motor_counts: real(body.ratio * output_count / motor_count),
-            motor_unmoved_after: (MOTOR_UNMOVED / step) as u16,
-            motor_trusted_after: (MOTOR_TRUSTED / step) as u16,
-            motor_slipped_after: (MOTOR_SLIPPED / step) as u16,
-            trusted_after: (TRUSTED_AFTER / LEARNING_INTERVAL) as u16,
-            moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
-            margin: real(MARGIN * half_gap + MARGIN * body.compliance * largest_force),
-            widest_part: real(WIDEST_PART),
-        },
-        response: response(&body, settings, motor_count, step),
-    };
-    Ok(tables)
+            motor_unmoved_after: (limits.motor_standstill / step) as u16,
+            motor_trusted_after: (limits.motor_readmission / step) as u16,
+            motor_slipped_after: (limits.motor_slip_readmission / step) as u16,
+            trusted_after: (limits.output_readmission / LEARNING_DESIGN.interval) as u16,
+            moved: libm::ldexp(limits.min_motion * output_count / TAU, 32) as u32,
+            margin: real(
+                limits.deflection_margin * self.half_gap()
+                    + limits.deflection_margin * body.compliance * self.largest_force(),
+            ),
+            widest_part: real(limits.widest_gap),
+        }
+    }
+}
+
+fn levers<T: Real>(body: &Body) -> LeverTable<T> {
+    let real = T::from_f64;
+    LeverTable {
+        sun: real(body.sun_lever),
+        per_sun: real(1.0 / body.sun_lever),
+        output: real(body.output_lever),
+        per_output: real(1.0 / body.output_lever),
+        ratio: real(body.ratio),
+        per_ratio: real(1.0 / body.ratio),
+    }
 }
 
 /// Variance R of a reading's rounding (O5), for a count [rad] and a shaft speed [rad/s]: grows with the periods per
@@ -295,16 +284,17 @@ fn rounding(count: f64, speed: f64, step: f64) -> f64 {
 /// Computes the table of the sign check (O25).
 fn response<T: Real>(body: &Body, settings: &ObserverSettings, motor_count: f64, step: f64) -> ResponseTable<T> {
     let inertia = body.motor_inertia + body.load_inertia / (body.ratio * body.ratio);
-    let unsure = (BLOCK_COUNTS * motor_count).max(BLOCK_GAPS * body.gap_at_motor());
-    let length =
-        libm::sqrt(unsure * inertia / settings.torque_limit).max(BLOCK_SWINGS * TAU / body.contact_frequency());
-    let block = libm::round(length.clamp(RESPONSE_BLOCK[0], RESPONSE_BLOCK[1]) / step).max(BLOCK_PERIODS);
+    let unsure = (RESPONSE_DESIGN.block_counts * motor_count).max(RESPONSE_DESIGN.block_gaps * body.gap_at_motor());
+    let length = libm::sqrt(unsure * inertia / settings.torque_limit)
+        .max(RESPONSE_DESIGN.block_swings * TAU / body.contact_frequency());
+    let block = libm::round(length.clamp(RESPONSE_DESIGN.block_time[0], RESPONSE_DESIGN.block_time[1]) / step)
+        .max(RESPONSE_DESIGN.block_periods);
     let length = block * step;
     ResponseTable {
         block: block as u16,
         per_block: T::from_f64(1.0 / block),
         inertia: T::from_f64(inertia / (length * length)),
-        large: T::from_f64(LARGE_TORQUE * settings.torque_limit),
+        large: T::from_f64(RESPONSE_DESIGN.large_torque * settings.torque_limit),
         alone: T::from_f64(2.0 * inertia / body.motor_inertia),
     }
 }
@@ -358,13 +348,13 @@ fn counts<T: Real>(
 /// Computes the table of the samples' clock; `period` is the control period [s].
 fn clock<T: Real>(period: f64, rate: u32) -> ClockTable<T> {
     let ticks = |periods: f64| libm::round(periods * period * f64::from(rate)) as u32;
-    let [shortest, longest] = PERIOD_TO_PERIOD.map(ticks);
+    let [shortest, longest] = CLOCK_DESIGN.accepted_periods.map(ticks);
     ClockTable {
         tick: T::from_f64(1.0 / f64::from(rate)),
         period: ticks(1.0),
         shortest,
         longer: longest - shortest,
-        oldest: ticks(OLDEST),
+        oldest: ticks(CLOCK_DESIGN.oldest_reading),
     }
 }
 

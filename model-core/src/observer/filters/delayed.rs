@@ -1,5 +1,11 @@
-//! Correction by a reading older than a control period (O3): the innovation compares the reading with the prediction
-//! for its time, and the gain carries the correction to now.
+//! Correction by a reading older than a control period:
+//!
+//! ```text
+//! (O3)  z = n T (w - n T w'/2) - a,   state += exp(A n T) G z
+//! ```
+//!
+//! Symbols: n = `periods`, T = `period`, T w' = `speed_change`, n T (w - n T w'/2) = `travel`, exp(A n T) G =
+//! `gain_now`.
 //!
 //! Treating a delayed reading as current closes a second feedback path: with an 18-bit encoder the filter is unstable
 //! from 2 periods of delay on.
@@ -30,5 +36,33 @@ impl<T: Real> Delayed<T> {
         let [angle, speed, torque] = *gain;
         let faster = self.periods * self.speed_per_torque * torque;
         [angle + self.periods * self.period * (speed + T::HALF * faster), speed + faster, torque]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn delayed(periods: f32) -> Delayed<f32> {
+        Delayed { periods, period: 0.1, speed_change: 2.0, speed_per_torque: -4.0 }
+    }
+
+    #[test]
+    fn present_reading_needs_no_correction() {
+        assert_eq!(delayed(0.0).travel(5.0), 0.0);
+        assert_eq!(delayed(0.0).gain_now(&[0.5, 3.0, -1.0]), [0.5, 3.0, -1.0]);
+    }
+
+    #[test]
+    fn travel_counts_from_speed_at_reading() {
+        // Speed 5 now and 1 two periods ago: 3 on average, over 0.2 s.
+        assert!((delayed(2.0).travel(5.0) - 0.6).abs() < 1e-6);
+    }
+
+    #[test]
+    fn gain_is_carried_to_now() {
+        // A torque of -1 for two periods changes the speed by 8, and the angle by 0.2 x (3 + 4).
+        let [angle, speed, torque] = delayed(2.0).gain_now(&[0.5, 3.0, -1.0]);
+        assert!((angle - 1.9).abs() < 1e-6 && speed == 11.0 && torque == -1.0);
     }
 }

@@ -6,12 +6,14 @@ mod delayed;
 pub mod drive_side;
 pub mod load_side;
 
+mod thresholds;
+
 use drive_side::DriveSide;
 use load_side::LoadSide;
 
-use super::sensors::counts::Advance;
-use super::sensors::latency::Freshness;
-use super::sensors::{Sensed, seconds};
+use super::sensors::counts::CountChange;
+use super::sensors::latency::SampleAge;
+use super::sensors::{SensorReadings, seconds};
 use crate::numbers::Real;
 use crate::observer::tables::{LoadTable, ObserverTables};
 
@@ -38,46 +40,46 @@ pub enum LoadCorrection<T: Real> {
 impl<T: Real> Filters<T> {
     /// Predicts both sides over one period and corrects the motor side by its reading.
     #[inline(always)]
-    pub fn step(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, motor_used: bool) {
-        self.drive.predict(&tables.drive, &tables.current, sensed.command, sensed.motor_turned);
-        match sensed.motor {
-            Advance::By(_) if motor_used => {
-                let age = seconds(&tables.clock, sensed.motor_age);
-                match sensed.freshness {
-                    Freshness::Fresh => self.drive.correct(&tables.drive, age),
-                    Freshness::Late => self.drive.correct_late(&tables.drive, age),
-                    Freshness::Lost | Freshness::LostForLong | Freshness::Unusable => {}
+    pub fn step(&mut self, tables: &ObserverTables<T>, readings: &SensorReadings<T>, motor_used: bool) {
+        self.drive.predict(&tables.drive, &tables.current, readings.command, readings.motor_travel);
+        match readings.motor {
+            CountChange::By(_) if motor_used => {
+                let age = seconds(&tables.clock, readings.motor_age);
+                match readings.motor_sample_age {
+                    SampleAge::Fresh => self.drive.correct(&tables.drive, age),
+                    SampleAge::Late => self.drive.correct_late(&tables.drive, age),
+                    SampleAge::Repeated | SampleAge::RepeatedForLong | SampleAge::Unusable => {}
                 }
             }
-            Advance::Began => self.drive.ahead = T::ZERO,
-            Advance::By(_) | Advance::Implausible | Advance::Jumped(_) => {}
+            CountChange::First => self.drive.angle_residual = T::ZERO,
+            CountChange::By(_) | CountChange::Implausible | CountChange::Jumped(_) => {}
         }
-        self.load.predict(&tables.load, self.mesh_torque, sensed.output_turned);
+        self.load.predict(&tables.load, self.mesh_torque, readings.output_travel);
     }
 
     /// Restarts the motor side when its encoder is readmitted; `counts` is the motor's travel in a period. Without an
     /// output encoder the link gets the motor's speed.
     #[cold]
-    pub fn find_motor(&mut self, tables: &ObserverTables<T>, counts: T, both_encoders: bool) {
-        self.drive.speed = (counts * tables.counts.motor.angle).over(tables.period);
+    pub fn restart_motor_side(&mut self, tables: &ObserverTables<T>, counts: T, both_encoders: bool) {
+        self.drive.speed = (counts * tables.counts.motor.angle) / tables.period;
         if !both_encoders {
-            self.load.ahead = T::ZERO;
+            self.load.angle_residual = T::ZERO;
             self.load.speed = self.drive.speed * tables.levers.per_ratio;
         }
     }
 
     /// Corrects the load side by the output reading of this period.
     #[inline]
-    pub fn correct_load(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) {
-        self.load.correct(&tables.load, seconds(&tables.clock, sensed.output_age), self.mesh_torque);
+    pub fn correct_load(&mut self, tables: &ObserverTables<T>, readings: &SensorReadings<T>) {
+        self.load.correct(&tables.load, seconds(&tables.clock, readings.output_age), self.mesh_torque);
     }
 
     /// Corrects the load side without an output encoder.
     pub fn correct_unseen_load(&mut self, table: &LoadTable<T>, correction: LoadCorrection<T>, per_ratio: T) {
         match correction {
             LoadCorrection::None => {}
-            LoadCorrection::TurnsWithMotor(further) => {
-                self.load.ahead += further;
+            LoadCorrection::TurnsWithMotor(angle) => {
+                self.load.angle_residual += angle;
                 self.load.speed = self.drive.speed * per_ratio;
             }
             LoadCorrection::InContact(innovation) => self.load.apply(&table.motor_only_gain, innovation),

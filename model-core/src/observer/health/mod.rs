@@ -1,61 +1,58 @@
 //! Health of both encoders: fault declaration, readmission, and the link's position while its encoder is excluded.
 //! Without the motor encoder no estimate is valid.
 
+pub mod link_without_encoder;
 pub mod motor_faults;
-pub mod motor_only;
 mod output_faults;
 mod plausibility;
 mod recovery;
+mod thresholds;
 mod torque_response;
 
-use motor_faults::{MotorFaultDetector, MotorScreened, MotorSurroundings, Outlook};
-use motor_only::MotorOnly;
+use link_without_encoder::LinkWithoutEncoder;
+use motor_faults::{MotorFaultDetector, MotorMotionLimits, MotorReadingStatus, RecoveryState};
 use output_faults::OutputFaultDetector;
-use recovery::Recovery;
-use torque_response::ResponseCheck;
+use recovery::{OutputEvidence, OutputRecovery};
+use thresholds::OUTPUT_FAULT;
+use torque_response::TorqueResponseCheck;
 
 use super::estimates::{MotorFault, OutputFault, Source};
 use super::filters::Filters;
-use super::learnt::fusion::{Fused, small};
-use super::learnt::regressors::{self, Touch};
-use super::learnt::{Learnt, Reading};
-use super::sensors::{Sensed, Sensors};
+use super::identification::mesh_measurement::{MeshMeasurement, saturating_difference};
+use super::identification::regressors::{self, ContactSample};
+use super::identification::{IntervalResult, ParameterEstimator};
+use super::sensors::{SensorReadings, Sensors};
 use crate::numbers::Real;
 use crate::observer::tables::ObserverTables;
 
-pub use output_faults::{LastMotion, Screened};
-pub use recovery::Return;
-
-/// Learning intervals between two stored load torques: the restored torque is 16 to 32 ms old, and most faults are
-/// declared sooner. A freeze in slow motion is declared after 8 to 22 ms, so that a torque may be stored after the
-/// output encoder froze.
-const LOOK: u16 = 16;
+pub use output_faults::{LastMotion, ReadingStatus};
+pub use recovery::Readmission;
 
 /// Encoders in use, and the state of the fault checks.
 #[derive(Debug, Clone, Copy)]
 pub struct Health<T: Real> {
     source: Source,
     motor: MotorFaultDetector<T>,
-    faults: OutputFaultDetector<T>,
-    recovery: Recovery<T>,
+    output: OutputFaultDetector<T>,
+    output_recovery: OutputRecovery<T>,
     /// Check of the sign of torque and motor encoder.
-    pub response: ResponseCheck<T>,
+    pub response: TorqueResponseCheck<T>,
     /// Estimate of the link's motion without its encoder.
-    pub motor_only: MotorOnly<T>,
+    pub unseen_link: LinkWithoutEncoder<T>,
     /// Last and last but one stored load torque, from before a failing encoder could corrupt the estimate [N m].
     load_torques: [T; 2],
-    looked: u16,
+    intervals_since_store: u16,
 }
 
 /// Verdict on the encoders by the deflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Judged {
+pub enum FaultDecision {
     /// Teeth allow the deflection.
-    Sound,
+    NoFault,
     /// The output encoder is excluded.
-    OutputFails,
+    ExcludeOutput,
     /// The motor encoder is excluded.
-    MotorFails,
+    ExcludeMotor,
 }
 
 impl<T: Real> Health<T> {
@@ -65,12 +62,12 @@ impl<T: Real> Health<T> {
         Self {
             source: Source::MotorOnly(if has_output { OutputFault::Unheard } else { OutputFault::Absent }),
             motor: MotorFaultDetector::new(),
-            faults: OutputFaultDetector::new(),
-            recovery: Recovery::new(),
-            response: ResponseCheck::new(),
-            motor_only: MotorOnly::default(),
+            output: OutputFaultDetector::new(),
+            output_recovery: OutputRecovery::new(),
+            response: TorqueResponseCheck::new(),
+            unseen_link: LinkWithoutEncoder::default(),
             load_torques: [T::ZERO; 2],
-            looked: 0,
+            intervals_since_store: 0,
         }
     }
 
@@ -85,53 +82,53 @@ impl<T: Real> Health<T> {
     }
 
     /// Motor speed [counts per period].
-    pub fn motor_counts(&self) -> T {
-        self.motor.counts()
+    pub fn motor_speed_in_counts(&self) -> T {
+        self.motor.speed_in_counts()
     }
 
     /// Judges the motor's reading by itself. After an exclusion no reading is used until
-    /// [`finds_motor`](Self::finds_motor).
+    /// [`try_readmit_motor`](Self::try_readmit_motor).
     #[inline(always)]
-    pub fn screen_motor(
+    pub fn check_motor_reading(
         &mut self,
         tables: &ObserverTables<T>,
-        sensed: &Sensed<T>,
+        readings: &SensorReadings<T>,
         sensors: &Sensors,
         filters: &Filters<T>,
-    ) -> MotorScreened {
-        let link_rate = self.both_encoders().then(|| self.faults.rate());
+    ) -> MotorReadingStatus {
+        let link_rate = self.both_encoders().then(|| self.output.rate());
         // While the torque is unknown, the largest plausible torque may brake the motor.
-        let unsure = sensors.is_unsure();
-        let drag = if unsure { tables.current.believed } else { tables.supervisor.motor_drag };
-        let surroundings = MotorSurroundings { table: &tables.supervisor, drive: &filters.drive, drag, link_rate };
-        self.motor.screen(tables, sensed, &surroundings)
+        let uncertain = sensors.is_torque_uncertain();
+        let unknown_torque = if uncertain { tables.current.believed } else { tables.supervisor.motor_drag };
+        let limits = MotorMotionLimits { table: &tables.supervisor, drive: &filters.drive, unknown_torque, link_rate };
+        self.motor.check_reading(tables, readings, &limits)
     }
 
     /// Decides on the readmission of the motor encoder from its outlook and a deflection of the teeth [m]. Of all
     /// possible motor positions the caller passes the deflection that agrees best with the output encoder.
-    pub fn finds_motor<const P: usize>(
+    pub fn try_readmit_motor<const P: usize>(
         &mut self,
-        outlook: Outlook,
-        learnt: &Learnt<T, P>,
+        state: RecoveryState,
+        estimator: &ParameterEstimator<T, P>,
         deflection: T,
-    ) -> Option<Return> {
+    ) -> Option<Readmission> {
         // At rest without torque the shafts are hardly wound up, so that a deflection slightly out of range is accepted
         // only once the outlook has settled.
-        let agrees = if outlook == Outlook::Settled {
-            output_faults::is_near(learnt, deflection)
+        let agrees = if state == RecoveryState::LongPlausible {
+            output_faults::is_within_wear(estimator, deflection)
         } else {
-            output_faults::is_possible(learnt, deflection, T::ZERO)
+            output_faults::is_possible(estimator, deflection, T::ZERO)
         };
-        let back = if !self.both_encoders() || agrees {
-            Return::AsLearnt
-        } else if outlook == Outlook::Settled && self.motor.has_moved() {
-            Return::Otherwise
+        let readmission = if !self.both_encoders() || agrees {
+            Readmission::SameOffset
+        } else if state == RecoveryState::LongPlausible && self.motor.has_moved() {
+            Readmission::NewOffset
         } else {
             return None;
         };
-        self.motor.trust();
-        self.faults.find_deflection();
-        Some(back)
+        self.motor.readmit();
+        self.output.resume_deflection();
+        Some(readmission)
     }
 
     /// Returns true while both encoders are in use.
@@ -141,71 +138,76 @@ impl<T: Real> Health<T> {
 
     /// Returns true once the deflection has been out of range for 4 ms, longer than impacts ring: teeth are worn, or an
     /// encoder fails.
-    pub fn is_at_odds(&self, tables: &ObserverTables<T>) -> bool {
-        self.faults.is_at_odds(&tables.supervisor)
+    pub fn is_deflection_out_of_range(&self, tables: &ObserverTables<T>) -> bool {
+        self.output.is_deflection_out_of_range(&tables.supervisor)
     }
 
     /// Judges the output's reading by itself. After an exclusion the caller continues without the output encoder.
     #[inline(always)]
-    pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) -> Screened<T> {
-        let screened = self.faults.screen(tables, sensed, self.both_encoders());
-        match &screened {
-            Screened::First => self.source = Source::Both,
-            Screened::GivenUp(fault, _) => self.give_up(*fault),
-            Screened::Used | Screened::NotUsed => {}
+    pub fn check_output_reading(
+        &mut self,
+        tables: &ObserverTables<T>,
+        readings: &SensorReadings<T>,
+    ) -> ReadingStatus<T> {
+        let status = self.output.check_reading(tables, readings, self.both_encoders());
+        match &status {
+            ReadingStatus::First => self.source = Source::Both,
+            ReadingStatus::Excluded(fault, _) => self.exclude_output(*fault),
+            ReadingStatus::Accepted | ReadingStatus::Rejected => {}
         }
-        screened
+        status
     }
 
     /// Judges both encoders by the deflection. After an exclusion the caller continues without that encoder. The
     /// encoder whose counts stand still while the other's advance is excluded.
-    pub fn judge<const P: usize>(
+    pub fn check_deflection<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
-        fused: &Fused<T>,
-        learnt: &Learnt<T, P>,
-    ) -> Judged {
+        measurement: &MeshMeasurement<T>,
+        estimator: &ParameterEstimator<T, P>,
+    ) -> FaultDecision {
         let both = self.both_encoders();
-        let [_, compliance] = learnt.shape();
-        let unwound = fused.of_teeth() - compliance * fused.force;
-        let outrun = self.motor.is_outrun(tables, learnt, unwound, fused.force) && both;
-        match self.faults.judge(tables, fused, learnt, unwound, both) {
-            Some(OutputFault::OutOfRange) if self.motor.is_unmoved(&tables.supervisor) => self.blame_motor(),
-            _ if outrun => self.blame_motor(),
+        let [_, compliance] = estimator.half_gap_and_compliance();
+        let unwound_deflection = measurement.tooth_deflection() - compliance * measurement.force;
+        let is_outrun =
+            self.motor.is_outrun_by_output(tables, estimator, unwound_deflection, measurement.force) && both;
+        match self.output.check_deflection(tables, measurement, estimator, unwound_deflection, both) {
+            Some(OutputFault::OutOfRange) if self.motor.is_at_standstill(&tables.supervisor) => self.exclude_motor(),
+            _ if is_outrun => self.exclude_motor(),
             Some(fault) => {
-                self.give_up(fault);
-                Judged::OutputFails
+                self.exclude_output(fault);
+                FaultDecision::ExcludeOutput
             }
-            None => Judged::Sound,
+            None => FaultDecision::NoFault,
         }
     }
 
     /// Excludes the motor encoder: its counts stand still while the link moves.
     #[cold]
-    fn blame_motor(&mut self) -> Judged {
-        self.motor.give_up(MotorFault::Frozen);
-        Judged::MotorFails
+    fn exclude_motor(&mut self) -> FaultDecision {
+        self.motor.exclude(MotorFault::Frozen);
+        FaultDecision::ExcludeMotor
     }
 
     /// Excludes the output encoder.
-    pub fn give_up(&mut self, fault: OutputFault) {
+    pub fn exclude_output(&mut self, fault: OutputFault) {
         self.source = Source::MotorOnly(fault);
-        self.faults.begin();
-        self.recovery.begin();
-        self.motor_only = MotorOnly::default();
+        self.output.reset_timer();
+        self.output_recovery.reset();
+        self.unseen_link = LinkWithoutEncoder::default();
     }
 
     /// Stored load torque from before the last possible fault began [N m].
-    pub fn load_torque_before(&self) -> T {
+    pub fn load_torque_before_fault(&self) -> T {
         let [_, before] = self.load_torques;
         before
     }
 
     /// Stores the load torque [N m]; called once per learning interval while both encoders are in use.
-    pub fn remember(&mut self, load_torque: T) {
-        self.looked += 1;
-        if self.looked >= LOOK {
-            self.looked = 0;
+    pub fn store_load_torque(&mut self, load_torque: T) {
+        self.intervals_since_store += 1;
+        if self.intervals_since_store >= OUTPUT_FAULT.load_torque_intervals {
+            self.intervals_since_store = 0;
             self.load_torques = [load_torque, self.load_torques[0]];
         }
     }
@@ -213,38 +215,46 @@ impl<T: Real> Health<T> {
     /// Decides on the readmission of the output encoder; called once per learning interval without it. Returns the kind
     /// of return and the encoder's slip as a deflection [m]: a deflection that no teeth allow is attributed to the
     /// encoder, not to the link.
-    pub fn reconsider<const P: usize>(
+    pub fn try_readmit_output<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
         sensors: &Sensors,
         filters: &Filters<T>,
-        learnt: &Learnt<T, P>,
-        reading: &Reading<T>,
-    ) -> Option<(Return, T)> {
-        let phase = sensors.counts.motor.phase(&tables.counts.motor);
-        let output = sensors.counts.output.phase(&tables.counts.output);
-        let free = regressors::free(filters.load.speed, phase, Some(output));
-        let measured =
-            tables.counts.length * small(sensors.counts.difference) + tables.levers.sun * filters.drive.ahead;
-        let room = tables.supervisor.margin + T::TWO * learnt.uncertainty.edge_deviation;
-        let force = reading.force();
-        let settled = reading.flank.map(|flank| {
-            let touch = Touch { flank: Some(flank), force, mesh: reading.mesh };
-            (flank, measured - learnt.learner.deflection(&touch.on(&free)))
+        estimator: &ParameterEstimator<T, P>,
+        interval: &IntervalResult<T>,
+    ) -> Option<(Readmission, T)> {
+        let motor_phase = sensors.counts.motor.phase(&tables.counts.motor);
+        let output_phase = sensors.counts.output.phase(&tables.counts.output);
+        let open_gap = regressors::open_gap(filters.load.speed, motor_phase, Some(output_phase));
+        let raw_deflection = tables.counts.length * saturating_difference(sensors.counts.difference)
+            + tables.levers.sun * filters.drive.angle_residual;
+        let tolerance = tables.supervisor.margin + T::TWO * estimator.uncertainty.edge_deviation;
+        let force = interval.force();
+        let settled = interval.flank.map(|flank| {
+            let contact = ContactSample { flank: Some(flank), force, mesh: interval.mesh };
+            (flank, raw_deflection - estimator.least_squares.deflection(&contact.add_to(&open_gap)))
         });
         // Between the flanks no contact is needed: the encoder agrees while the deflection lies within the gap.
-        let deflection = measured - learnt.learner.deflection(&free) - learnt.transmission_error(&reading.mesh);
-        let between = output_faults::is_possible(learnt, deflection, force);
-        let silent = self.faults.is_silent();
-        let back = self.recovery.step(&tables.supervisor, settled, room, between, (!silent).then_some(output))?;
+        let deflection = raw_deflection
+            - estimator.least_squares.deflection(&open_gap)
+            - estimator.transmission_error(&interval.mesh);
+        let lies_in_gap = output_faults::is_possible(estimator, deflection, force);
+        let is_silent = self.output.is_silent();
+        let position = (!is_silent).then_some(output_phase);
+        let evidence = OutputEvidence { settled, tolerance, lies_in_gap, position };
+        let readmission = self.output_recovery.step(&tables.supervisor, &evidence)?;
         if self.source == Source::MotorOnly(OutputFault::Absent) {
             return None;
         }
         self.source = Source::Both;
         let slip = match settled {
-            Some((_, beyond)) if back == Return::Otherwise && !output_faults::is_near(learnt, deflection) => beyond,
+            Some((_, offset))
+                if readmission == Readmission::NewOffset && !output_faults::is_within_wear(estimator, deflection) =>
+            {
+                offset
+            }
             _ => T::ZERO,
         };
-        Some((back, slip))
+        Some((readmission, slip))
     }
 }

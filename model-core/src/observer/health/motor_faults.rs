@@ -2,7 +2,7 @@
 //!
 //! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | counts that jumped ([`Advance::Jumped`]) | four readings farther apart than any motor turns | random counts, a slipped coupling | `wild motor_encoder::random_motor_counts_are_reported` |
+//! | 1 | counts that jumped ([`CountChange::Jumped`]) | four readings farther apart than any motor turns | random counts, a slipped coupling | `wild motor_encoder::random_motor_counts_are_reported` |
 //! | 2 | [`Plausibility`]: counts that jump | a few readings farther on than motor and link can throw the motor | small jumps | `wild motor_encoder::small_motor_jump_is_reported` |
 //! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, within a few periods | `wild motor_encoder::motor_freeze_at_speed_is_detected` |
 //! | 4 | the output outruns counts that stand still under a torque | more than wind-up, while a free motor would have moved | a frozen encoder in slow motion | `wild motor_encoder::slow_motor_freeze_is_detected_in_the_gap` |
@@ -13,24 +13,18 @@
 //! that move plausibly for 100 ms without agreement mean that the encoder has slipped: the encoder is readmitted and
 //! the offset is estimated anew.
 
-use super::output_faults::{outruns, slack};
-use super::plausibility::{COUNT, FEWEST, Plausibility, Surroundings, Verdict, counts};
+use super::output_faults::{deflection_tolerance, exceeds_gap};
+use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
+use super::thresholds::{MOTOR_FAULT, PARTS_PER_COUNT, PLAUSIBILITY};
 use crate::numbers::Real;
-use crate::numbers::arithmetic::beyond;
+use crate::numbers::arithmetic::deadband;
 use crate::observer::estimates::MotorFault;
 use crate::observer::filters::drive_side::DriveSide;
-use crate::observer::learnt::Learnt;
-use crate::observer::sensors::Sensed;
-use crate::observer::sensors::counts::Advance;
-use crate::observer::sensors::latency::Freshness;
+use crate::observer::identification::ParameterEstimator;
+use crate::observer::sensors::SensorReadings;
+use crate::observer::sensors::counts::CountChange;
+use crate::observer::sensors::latency::SampleAge;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
-
-/// Counts by which the commanded torque would have moved a free motor before a stationary motor counts as blocked [-]:
-/// four times the travel that a free motor loses while it reverses under a torque. Tuned on `hil/motor-faults.toml`.
-const HELD: i32 = 16;
-
-/// Periods until the estimated speed follows a torque.
-const LAG: i32 = 6;
 
 /// Fault checks of the motor encoder.
 #[derive(Debug, Clone, Copy)]
@@ -39,97 +33,99 @@ pub struct MotorFaultDetector<T: Real> {
     /// Reason for the exclusion.
     fault: Option<MotorFault>,
     /// Periods since the counts last changed.
-    unmoved_for: u16,
+    standstill_periods: u16,
     /// Speed [counts per period] and travel [counts] that the torque alone would have given a free motor since then.
-    free_rate: T,
-    free_way: T,
+    free_speed: T,
+    free_travel: T,
     /// Deflection less wind-up [m] and mesh force [N] when the counts last changed.
-    stood_at: T,
-    stood_under: T,
+    standstill_deflection: T,
+    standstill_force: T,
     /// Periods of plausible readings since the exclusion, and whether the counts have moved.
-    sensible_for: u16,
-    moved: bool,
+    plausible_for: u16,
+    has_moved: bool,
 }
 
 /// Result of screening a motor reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MotorScreened {
+pub enum MotorReadingStatus {
     /// The reading is used.
-    Used,
+    Accepted,
     /// The reading is rejected unless the next readings confirm it; the motor is assumed to keep its speed.
-    NotUsed,
+    Rejected,
     /// The reading excludes the encoder.
-    GivenUp,
+    Excluded,
     /// The encoder was excluded before.
-    Doubted(Outlook),
+    Recovering(RecoveryState),
 }
 
 /// State of the readings of an excluded encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outlook {
+pub enum RecoveryState {
     /// The readings are not plausible yet.
-    Bad,
+    NotPlausible,
     /// The readings are plausible: the encoder is readmitted if it agrees with the output encoder.
-    Fair,
+    Plausible,
     /// The readings have been plausible for so long that the encoder is readmitted in any case; without agreement it
     /// has slipped.
-    Settled,
+    LongPlausible,
 }
 
 /// Influences that change the motor's speed between two readings.
-pub struct MotorSurroundings<'now, T: Real> {
+pub struct MotorMotionLimits<'now, T: Real> {
     pub table: &'now SupervisorTable<T>,
     pub drive: &'now DriveSide<T>,
     /// Largest unknown braking torque beside the commanded torque [N m].
-    pub drag: T,
+    pub unknown_torque: T,
     /// Speed of the link [parts of an output count per period]; `None` if unknown.
     pub link_rate: Option<i32>,
 }
 
-impl<T: Real> Surroundings<T> for MotorSurroundings<'_, T> {
-    fn stops(&self) -> &StopTable<T> {
+impl<T: Real> MotionLimits<T> for MotorMotionLimits<'_, T> {
+    fn stop_table(&self) -> &StopTable<T> {
         &self.table.motor
     }
 
-    fn brake(&self) -> T {
-        self.table.motor_brake * (self.drive.strongest() + self.drag)
+    fn half_deceleration(&self) -> T {
+        self.table.motor_brake * (self.drive.peak_torque() + self.unknown_torque)
     }
 
     /// Teeth throw the motor back at its own speed, or to twice the link's speed; the torque also changes the speed
     /// before the estimate follows.
-    fn throw(&self, rate: i32) -> i32 {
+    fn impact_speed_change(&self, rate: i32) -> i32 {
         let Some(link) = self.link() else { return i32::MAX };
         let fastest = rate.saturating_abs().max(link.saturating_abs());
-        fastest.saturating_mul(2).saturating_add(whole(T::from_i32(COUNT) * self.unfollowed()))
+        fastest
+            .saturating_mul(2)
+            .saturating_add(saturating_whole(T::from_i32(PARTS_PER_COUNT) * self.unobserved_speed_change()))
     }
 
     /// Teeth move the motor no farther from the link's speed than it was.
-    fn carried(&self, rate: i32) -> i32 {
+    fn speed_kept_by_teeth(&self, rate: i32) -> i32 {
         let Some(link) = self.link() else { return 0 };
         link.saturating_abs().saturating_sub(rate.saturating_sub(link).saturating_abs()).max(0)
     }
 
     /// The estimated speed lags behind by a few periods of braking. Speeds below a count per period are not certain.
-    fn sure(&self, rate: i32) -> T {
-        let braked = counts::<T>(rate) - self.unfollowed();
-        if rate >= COUNT && braked > T::ZERO { braked } else { T::ZERO }
+    fn lower_speed_bound(&self, rate: i32) -> T {
+        let braked = counts::<T>(rate) - self.unobserved_speed_change();
+        if rate >= PARTS_PER_COUNT && braked > T::ZERO { braked } else { T::ZERO }
     }
 }
 
-impl<T: Real> MotorSurroundings<'_, T> {
+impl<T: Real> MotorMotionLimits<'_, T> {
     /// Speed of a motor that turns with the link [parts of a motor count per period].
     fn link(&self) -> Option<i32> {
-        self.link_rate.map(|rate| whole(T::from_i32(rate) * self.table.motor_counts))
+        self.link_rate.map(|rate| saturating_whole(T::from_i32(rate) * self.table.motor_counts))
     }
 
     /// Change of speed that the torques may have caused and the estimate does not show yet [counts per period].
-    fn unfollowed(&self) -> T {
-        T::from_i32(2 * LAG) * self.brake()
+    fn unobserved_speed_change(&self) -> T {
+        T::from_i32(2 * MOTOR_FAULT.speed_lag) * self.half_deceleration()
     }
 }
 
 /// Truncates towards zero and saturates.
-fn whole<T: Real>(size: T) -> i32 {
+fn saturating_whole<T: Real>(size: T) -> i32 {
     size.to_i64().clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
@@ -138,13 +134,13 @@ impl<T: Real> MotorFaultDetector<T> {
         Self {
             plausibility: Plausibility::new(),
             fault: None,
-            unmoved_for: 0,
-            free_rate: T::ZERO,
-            free_way: T::ZERO,
-            stood_at: T::ZERO,
-            stood_under: T::ZERO,
-            sensible_for: 0,
-            moved: false,
+            standstill_periods: 0,
+            free_speed: T::ZERO,
+            free_travel: T::ZERO,
+            standstill_deflection: T::ZERO,
+            standstill_force: T::ZERO,
+            plausible_for: 0,
+            has_moved: false,
         }
     }
 
@@ -154,172 +150,266 @@ impl<T: Real> MotorFaultDetector<T> {
     }
 
     /// Excludes the encoder.
-    pub fn give_up(&mut self, fault: MotorFault) -> MotorScreened {
+    pub fn exclude(&mut self, fault: MotorFault) -> MotorReadingStatus {
         self.fault = Some(fault);
-        self.plausibility.lose();
-        self.sensible_for = 0;
-        self.moved = fault == MotorFault::Jumped;
-        MotorScreened::GivenUp
+        self.plausibility.reset_speed();
+        self.plausible_for = 0;
+        self.has_moved = fault == MotorFault::Jumped;
+        MotorReadingStatus::Excluded
     }
 
     /// Readmits the encoder.
-    pub fn trust(&mut self) {
+    pub fn readmit(&mut self) {
         *self = Self { plausibility: self.plausibility, ..Self::new() };
     }
 
     /// Speed of the motor, 0 if unknown [counts per period].
-    pub fn counts(&self) -> T {
+    pub fn speed_in_counts(&self) -> T {
         self.plausibility.speed().unwrap_or(T::ZERO)
     }
 
     /// Returns true once the counts have stood still for longer than chance explains.
-    pub fn is_unmoved(&self, table: &SupervisorTable<T>) -> bool {
-        self.unmoved_for >= table.motor_unmoved_after
+    pub fn is_at_standstill(&self, table: &SupervisorTable<T>) -> bool {
+        self.standstill_periods >= table.motor_unmoved_after
     }
 
     /// Judges the reading of one period by the readings before.
     #[inline(always)]
-    pub fn screen(
+    pub fn check_reading(
         &mut self,
         tables: &ObserverTables<T>,
-        sensed: &Sensed<T>,
-        surroundings: &MotorSurroundings<'_, T>,
-    ) -> MotorScreened {
+        readings: &SensorReadings<T>,
+        limits: &MotorMotionLimits<'_, T>,
+    ) -> MotorReadingStatus {
         let clock = &tables.clock;
-        let regular = sensed.motor_interval.wrapping_sub(clock.shortest) <= clock.longer;
-        let used = self.fault.is_none() && sensed.freshness != Freshness::Unusable;
-        let Advance::By(by) = sensed.motor else { return self.screen_odd(sensed) };
-        if !(regular && used) {
-            return self.screen_irregular(tables, sensed, surroundings, regular, by);
+        let is_regular = readings.motor_interval.wrapping_sub(clock.shortest) <= clock.longer;
+        let is_used = self.fault.is_none() && readings.motor_sample_age != SampleAge::Unusable;
+        let CountChange::By(by) = readings.motor else { return self.check_distant_reading(readings) };
+        if !(is_regular && is_used) {
+            return self.check_irregular_reading(tables, readings, limits, is_regular, by);
         }
         if by == 0 {
-            self.stand(&tables.supervisor, surroundings.drive);
+            self.integrate_free_motion(&tables.supervisor, limits.drive);
         } else {
-            self.unmoved_for = 0;
+            self.standstill_periods = 0;
         }
-        match self.plausibility.take(surroundings, by) {
-            Verdict::Plausible => MotorScreened::Used,
-            Verdict::Suspect => MotorScreened::NotUsed,
-            Verdict::Implausible => self.implausible(),
+        match self.plausibility.check(limits, by) {
+            PlausibilityResult::Plausible => MotorReadingStatus::Accepted,
+            PlausibilityResult::Suspect => MotorReadingStatus::Rejected,
+            PlausibilityResult::Implausible => self.exclude_implausible(),
         }
     }
 
     /// Counts one more period at a standstill and integrates the travel that the torque would have given a motor held
     /// by friction alone.
-    fn stand(&mut self, table: &SupervisorTable<T>, drive: &DriveSide<T>) {
-        if self.unmoved_for == 0 {
-            (self.free_rate, self.free_way) = (T::ZERO, T::ZERO);
+    fn integrate_free_motion(&mut self, table: &SupervisorTable<T>, drive: &DriveSide<T>) {
+        if self.standstill_periods == 0 {
+            (self.free_speed, self.free_travel) = (T::ZERO, T::ZERO);
         }
-        self.unmoved_for = self.unmoved_for.saturating_add(1);
+        self.standstill_periods = self.standstill_periods.saturating_add(1);
         let torque = drive.air_gap();
         let per_torque = T::TWO * table.motor_brake;
-        let left = beyond(torque, table.motor_drag);
-        if left == T::ZERO {
+        let excess_torque = deadband(torque, table.motor_drag);
+        if excess_torque == T::ZERO {
             // Friction in excess of the torque stops the motor without reversing it.
-            self.free_rate = beyond(self.free_rate, per_torque * (table.motor_drag - torque.abs()));
+            self.free_speed = deadband(self.free_speed, per_torque * (table.motor_drag - torque.abs()));
         } else {
-            self.free_rate += per_torque * left;
+            self.free_speed += per_torque * excess_torque;
         }
-        self.free_way += self.free_rate;
+        self.free_travel += self.free_speed;
     }
 
     /// Handles the first reading, and a reading far from the last one.
     #[cold]
-    fn screen_odd(&mut self, sensed: &Sensed<T>) -> MotorScreened {
-        let jumped = matches!(sensed.motor, Advance::Jumped(_));
-        self.sensible_for = 0;
-        self.moved |= jumped;
-        if jumped {
-            self.plausibility.lose();
+    fn check_distant_reading(&mut self, readings: &SensorReadings<T>) -> MotorReadingStatus {
+        let has_jumped = matches!(readings.motor, CountChange::Jumped(_));
+        self.plausible_for = 0;
+        self.has_moved |= has_jumped;
+        if has_jumped {
+            self.plausibility.reset_speed();
         }
         if self.fault.is_some() {
-            MotorScreened::Doubted(Outlook::Bad)
-        } else if sensed.freshness == Freshness::Unusable {
-            self.give_up(MotorFault::Silent)
-        } else if jumped {
-            self.give_up(MotorFault::Jumped)
-        } else if sensed.motor == Advance::Began {
-            MotorScreened::Used
+            MotorReadingStatus::Recovering(RecoveryState::NotPlausible)
+        } else if readings.motor_sample_age == SampleAge::Unusable {
+            self.exclude(MotorFault::Silent)
+        } else if has_jumped {
+            self.exclude(MotorFault::Jumped)
+        } else if readings.motor == CountChange::First {
+            MotorReadingStatus::Accepted
         } else {
-            MotorScreened::NotUsed
+            MotorReadingStatus::Rejected
         }
     }
 
     /// Handles a reading after an irregular interval, a reading that is too old, and a reading of an excluded encoder.
     #[cold]
-    fn screen_irregular(
+    fn check_irregular_reading(
         &mut self,
         tables: &ObserverTables<T>,
-        sensed: &Sensed<T>,
-        surroundings: &MotorSurroundings<'_, T>,
-        regular: bool,
+        readings: &SensorReadings<T>,
+        limits: &MotorMotionLimits<'_, T>,
+        is_regular: bool,
         by: i32,
-    ) -> MotorScreened {
-        let mut sensible = sensed.freshness != Freshness::Unusable;
-        if regular {
-            let verdict = self.plausibility.take(surroundings, by);
-            sensible &= verdict == Verdict::Plausible;
-            if verdict == Verdict::Implausible {
-                self.plausibility.lose();
+    ) -> MotorReadingStatus {
+        let mut is_plausible = readings.motor_sample_age != SampleAge::Unusable;
+        if is_regular {
+            let result = self.plausibility.check(limits, by);
+            is_plausible &= result == PlausibilityResult::Plausible;
+            if result == PlausibilityResult::Implausible {
+                self.plausibility.reset_speed();
             }
-        } else if sensed.motor_interval > 0 {
+        } else if readings.motor_interval > 0 {
             // The motor may have moved any way during missing readings.
-            self.plausibility.lose();
+            self.plausibility.reset_speed();
         }
         if self.fault.is_none() {
-            return if sensed.freshness == Freshness::Unusable {
-                self.give_up(MotorFault::Silent)
+            return if readings.motor_sample_age == SampleAge::Unusable {
+                self.exclude(MotorFault::Silent)
             } else {
-                MotorScreened::Used
+                MotorReadingStatus::Accepted
             };
         }
-        self.moved |= by != 0;
-        self.sensible_for = if sensible { self.sensible_for.saturating_add(1) } else { 0 };
+        self.has_moved |= by != 0;
+        self.plausible_for = if is_plausible { self.plausible_for.saturating_add(1) } else { 0 };
         let table = &tables.supervisor;
-        MotorScreened::Doubted(if self.sensible_for >= table.motor_slipped_after {
-            Outlook::Settled
-        } else if self.sensible_for >= table.motor_trusted_after && self.moved {
-            Outlook::Fair
+        MotorReadingStatus::Recovering(if self.plausible_for >= table.motor_slipped_after {
+            RecoveryState::LongPlausible
+        } else if self.plausible_for >= table.motor_trusted_after && self.has_moved {
+            RecoveryState::Plausible
         } else {
-            Outlook::Bad
+            RecoveryState::NotPlausible
         })
     }
 
     /// Excludes the encoder after readings that no motor can follow.
     #[cold]
-    fn implausible(&mut self) -> MotorScreened {
-        let frozen = self.plausibility.stands_still();
-        self.give_up(if frozen { MotorFault::Frozen } else { MotorFault::Jumped })
+    fn exclude_implausible(&mut self) -> MotorReadingStatus {
+        let is_frozen = self.plausibility.is_standstill();
+        self.exclude(if is_frozen { MotorFault::Frozen } else { MotorFault::Jumped })
     }
 
     /// Returns true if the link has moved by more than gap and wind-up allow while the motor's counts stood still:
-    /// teeth would have moved the motor. `unwound` is the deflection less wind-up [m], under a force [N].
-    pub fn is_outrun<const P: usize>(
+    /// teeth would have moved the motor. `unwound_deflection` is the deflection less wind-up [m], under a force [N].
+    pub fn is_outrun_by_output<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
-        learnt: &Learnt<T, P>,
-        unwound: T,
+        estimator: &ParameterEstimator<T, P>,
+        unwound_deflection: T,
         force: T,
     ) -> bool {
-        if self.unmoved_for == 0 {
-            (self.stood_at, self.stood_under) = (unwound, force);
+        if self.standstill_periods == 0 {
+            (self.standstill_deflection, self.standstill_force) = (unwound_deflection, force);
             return false;
         }
-        let [half_gap, compliance] = learnt.shape();
-        let went_on = (unwound - self.stood_at).abs();
+        let [half_gap, compliance] = estimator.half_gap_and_compliance();
+        let output_travel = (unwound_deflection - self.standstill_deflection).abs();
         // A motor that no torque moves is held by teeth: the link can move by the wind-up of those teeth, and by a
         // little more while the half-gap is a guess.
-        if self.unmoved_for > FEWEST && self.free_way.abs() > T::from_i32(HELD) {
-            let wound_up = compliance * (force - self.stood_under).abs();
-            let unknown = T::QUARTER * learnt.uncertainty.guessed_half_gap;
-            return went_on > unknown + wound_up + slack(tables, learnt, force);
+        if self.standstill_periods > PLAUSIBILITY.min_standstill_readings
+            && self.free_travel.abs() > T::from_i32(MOTOR_FAULT.blocked_free_travel)
+        {
+            let wind_up = compliance * (force - self.standstill_force).abs();
+            let half_gap_tolerance = T::QUARTER * estimator.uncertainty.guessed_half_gap;
+            return output_travel > half_gap_tolerance + wind_up + deflection_tolerance(tables, estimator, force);
         }
-        went_on > half_gap && self.is_unmoved(&tables.supervisor) && outruns(tables, learnt, went_on, force)
+        output_travel > half_gap
+            && self.is_at_standstill(&tables.supervisor)
+            && exceeds_gap(tables, estimator, output_travel, force)
     }
 
     /// Returns true if the readings have moved. Without agreement a moving encoder has slipped; a stationary one may
     /// still be frozen.
     pub fn has_moved(&self) -> bool {
-        self.moved
+        self.has_moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::{current, drive, supervisor};
+
+    /// Motor side under an air-gap torque [N m].
+    fn under(torque: f32) -> DriveSide<f32> {
+        let mut side = DriveSide::default();
+        side.predict(&drive(), &current(), torque, 0.0);
+        side
+    }
+
+    /// Free travel after ten periods at a standstill under a torque.
+    fn free_travel(torque: f32) -> f32 {
+        let mut detector = MotorFaultDetector::new();
+        (0..10).for_each(|_| detector.integrate_free_motion(&supervisor(), &under(torque)));
+        detector.free_travel
+    }
+
+    #[test]
+    fn torque_within_friction_moves_nothing() {
+        assert_eq!(free_travel(0.1), 0.0);
+        assert_eq!(free_travel(-0.1), 0.0);
+    }
+
+    #[test]
+    fn torque_above_friction_moves_free_motor() {
+        // 1 count per period^2 and newton metre above 0.1 N m, for 1 + 2 + ... + 10 periods.
+        assert!((free_travel(1.1) - 55.0).abs() < 1e-3, "{}", free_travel(1.1));
+        assert!((free_travel(-1.1) + 55.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn friction_stops_free_motor() {
+        let mut detector = MotorFaultDetector::new();
+        detector.integrate_free_motion(&supervisor(), &under(1.1));
+        assert_eq!(detector.free_speed, 1.0);
+        (0..20).for_each(|_| detector.integrate_free_motion(&supervisor(), &under(0.0)));
+        assert_eq!(detector.free_speed, 0.0);
+    }
+
+    #[test]
+    fn standstill_counts_from_limit() {
+        let (mut detector, table) = (MotorFaultDetector::<f32>::new(), supervisor());
+        for _ in 1..table.motor_unmoved_after {
+            detector.integrate_free_motion(&table, &under(0.0));
+        }
+        assert!(!detector.is_at_standstill(&table));
+        detector.integrate_free_motion(&table, &under(0.0));
+        assert!(detector.is_at_standstill(&table));
+    }
+
+    #[test]
+    fn readmission_clears_fault() {
+        let mut detector = MotorFaultDetector::<f32>::new();
+        assert_eq!(detector.exclude(MotorFault::Jumped), MotorReadingStatus::Excluded);
+        assert_eq!((detector.fault(), detector.has_moved()), (Some(MotorFault::Jumped), true));
+        detector.readmit();
+        assert_eq!((detector.fault(), detector.has_moved()), (None, false));
+    }
+
+    #[test]
+    fn unknown_link_speed_allows_any_impact() {
+        let (side, table) = (under(0.0), supervisor());
+        let limits = MotorMotionLimits { table: &table, drive: &side, unknown_torque: 0.0, link_rate: None };
+        assert_eq!((limits.impact_speed_change(640), limits.speed_kept_by_teeth(640)), (i32::MAX, 0));
+    }
+
+    #[test]
+    fn impact_reaches_twice_the_faster_speed() {
+        let (side, table) = (under(0.0), supervisor());
+        let limits =
+            |rate| MotorMotionLimits { table: &table, drive: &side, unknown_torque: 0.0, link_rate: Some(rate) };
+        assert_eq!(limits(100).impact_speed_change(-640), 1280);
+        assert_eq!(limits(-1000).impact_speed_change(640), 2000);
+        assert_eq!(limits(100).speed_kept_by_teeth(100), 100, "a motor that turns with the link keeps its speed");
+        assert_eq!(limits(100).speed_kept_by_teeth(300), 0);
+    }
+
+    #[test]
+    fn speed_below_one_count_is_uncertain() {
+        let (side, table) = (under(0.0), supervisor());
+        let limits = MotorMotionLimits { table: &table, drive: &side, unknown_torque: 0.0, link_rate: None };
+        assert_eq!(limits.lower_speed_bound(PARTS_PER_COUNT - 1), 0.0);
+        assert_eq!(limits.lower_speed_bound(PARTS_PER_COUNT), 1.0);
+        let braked = MotorMotionLimits { unknown_torque: 1.0, ..limits };
+        assert_eq!(braked.lower_speed_bound(PARTS_PER_COUNT), 0.0, "braking by 1 N m is not in the estimate yet");
     }
 }

@@ -1,95 +1,102 @@
-//! Faults of the output encoder (O23, O24), in the order of the checks. The first check that fails excludes the
-//! encoder:
+//! Faults of the output encoder:
+//!
+//! ```text
+//! (O23) |d_t| < wind-up + c + 3 sigma(edge) + 0.1 (c + κ F_max)
+//! (O24) |change of d_t less wind-up| > 2 (c + 3 sigma(c) + 0.1 (c + κ F_max) + 2 sigma(κ) |F|) + 1 count
+//! ```
+//!
+//! Symbols: d_t = `deflection`, c + 3 sigma(edge) + 0.1 (...) = `Uncertainty::reach`, change of d_t = `travel`, 0.1 (c
+//! + κ F_max) = `margin`, 2 sigma(κ) = `compliance_uncertainty`.
+//!
+//! The first check that fails excludes the encoder:
 //!
 //! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | counts that jumped for good ([`Advance::Jumped`]) | readings farther apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
+//! | 1 | counts that jumped for good ([`CountChange::Jumped`]) | readings farther apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
 //! | 2 | [`Plausibility`]: counts that jump | a few readings that confirm the jump | a slipped coupling, an offset; acts before the deflection is corrupted | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
 //! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, within a few periods | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
 //! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::silent_output_is_reported_and_readmitted` |
 //! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | an encoder that froze in slow motion or at rest | `observer faults::motor_travel_reveals_frozen_output` |
 //! | 6 | a deflection that no teeth allow | out of range for 4 ms, longer than impacts ring | all other faults: slow slip, missing counts | `observer faults::lost_counts_keep_half_backlash_positive` |
-//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::narrowing_output_is_excluded` |
+//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`identification::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::narrowing_output_is_excluded` |
 //!
-//! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
+//! [`identification::Outcome::EncoderFails`]: crate::observer::identification::Outcome::EncoderFails
 
-use super::plausibility::{Plausibility, Surroundings, Verdict, counts};
+use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
+use super::thresholds::OUTPUT_FAULT;
 use crate::numbers::Real;
 use crate::observer::estimates::OutputFault;
-use crate::observer::learnt::Learnt;
-use crate::observer::learnt::fusion::Fused;
-use crate::observer::sensors::Sensed;
-use crate::observer::sensors::counts::Advance;
+use crate::observer::identification::ParameterEstimator;
+use crate::observer::identification::mesh_measurement::MeshMeasurement;
+use crate::observer::sensors::SensorReadings;
+use crate::observer::sensors::counts::CountChange;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
-
-/// Longest interval between two readings over which the link's speed is kept [control periods].
-const SPEED_KEPT: u32 = 6;
 
 /// Fault checks of the output encoder.
 #[derive(Debug, Clone, Copy)]
 pub struct OutputFaultDetector<T: Real> {
     plausibility: Plausibility,
-    silent_for: u16,
-    unmoved_for: u16,
-    outside_for: u16,
-    /// Deflection of the teeth in the last period [m]. `jumped`: the deflection jumped to its present place, beyond its
-    /// range or within the margin of its end.
+    silent_periods: u16,
+    standstill_periods: u16,
+    out_of_range_for: u16,
+    /// Deflection of the teeth in the last period [m]. `has_jumped`: the deflection jumped to its present place, beyond
+    /// its range or within the margin of its end.
     deflection: T,
-    jumped: bool,
+    has_jumped: bool,
     /// Deflection less wind-up when the counts last changed [m].
-    stood_at: T,
+    standstill_deflection: T,
     /// True if the deflection was unknown in the last period.
-    found: bool,
+    deflection_unknown: bool,
 }
 
 /// An obstacle stops a link; nothing throws a link.
-impl<T: Real> Surroundings<T> for SupervisorTable<T> {
-    fn stops(&self) -> &StopTable<T> {
+impl<T: Real> MotionLimits<T> for SupervisorTable<T> {
+    fn stop_table(&self) -> &StopTable<T> {
         &self.output
     }
 
-    fn brake(&self) -> T {
+    fn half_deceleration(&self) -> T {
         self.output_brake
     }
 
-    fn throw(&self, _: i32) -> i32 {
+    fn impact_speed_change(&self, _: i32) -> i32 {
         0
     }
 
-    fn carried(&self, _: i32) -> i32 {
+    fn speed_kept_by_teeth(&self, _: i32) -> i32 {
         0
     }
 
-    fn sure(&self, rate: i32) -> T {
+    fn lower_speed_bound(&self, rate: i32) -> T {
         counts(rate)
     }
 }
 
 /// Result of screening a reading.
 #[derive(Debug, Clone, Copy)]
-pub enum Screened<T: Real> {
+pub enum ReadingStatus<T: Real> {
     /// First reading of the run; accepted.
     First,
     /// The reading is used.
-    Used,
+    Accepted,
     /// The reading is missing or rejected.
-    NotUsed,
+    Rejected,
     /// The reading excludes the encoder. The last motion of the link is given if known.
-    GivenUp(OutputFault, Option<LastMotion<T>>),
+    Excluded(OutputFault, Option<LastMotion<T>>),
 }
 
 /// Motion of the link when its readings broke off.
 #[derive(Debug, Clone, Copy)]
 pub struct LastMotion<T: Real> {
     /// Lead of the link over its last reading [counts].
-    pub ahead: T,
+    pub lead: T,
     /// Speed [counts per period].
     pub speed: T,
 }
 
 /// Range of a deflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Range {
+enum DeflectionRange {
     /// Between the flanks, or beyond a flank by at most the wind-up.
     Possible,
     /// Farther beyond a flank, by no more than wear.
@@ -102,30 +109,30 @@ impl<T: Real> OutputFaultDetector<T> {
     pub fn new() -> Self {
         Self {
             plausibility: Plausibility::new(),
-            silent_for: 0,
-            unmoved_for: 0,
-            outside_for: 0,
+            silent_periods: 0,
+            standstill_periods: 0,
+            out_of_range_for: 0,
             deflection: T::ZERO,
-            jumped: false,
-            stood_at: T::ZERO,
-            found: false,
+            has_jumped: false,
+            standstill_deflection: T::ZERO,
+            deflection_unknown: false,
         }
     }
 
     /// Starts the time out of range anew after an exclusion.
-    pub fn begin(&mut self) {
-        self.outside_for = 0;
+    pub fn reset_timer(&mut self) {
+        self.out_of_range_for = 0;
     }
 
     /// Starts anew after an unknown deflection: counts that stood still did so at another deflection.
-    pub fn find_deflection(&mut self) {
-        self.outside_for = 0;
-        self.found = true;
+    pub fn resume_deflection(&mut self) {
+        self.out_of_range_for = 0;
+        self.deflection_unknown = true;
     }
 
     /// Returns true once the deflection has been out of range for 4 ms, longer than impacts ring.
-    pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
-        self.outside_for >= table.failed_after
+    pub fn is_deflection_out_of_range(&self, table: &SupervisorTable<T>) -> bool {
+        self.out_of_range_for >= table.failed_after
     }
 
     /// Speed of the link [parts of an output count per period].
@@ -135,113 +142,118 @@ impl<T: Real> OutputFaultDetector<T> {
 
     /// Returns true if the last period had no reading.
     pub fn is_silent(&self) -> bool {
-        self.silent_for > 0
+        self.silent_periods > 0
     }
 
     /// Judges the reading of one period by the readings before.
     // Inlined: a call and its result cost more than the work of most periods.
     #[inline(always)]
-    pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, both_encoders: bool) -> Screened<T> {
-        let by = match sensed.output {
+    pub fn check_reading(
+        &mut self,
+        tables: &ObserverTables<T>,
+        readings: &SensorReadings<T>,
+        both_encoders: bool,
+    ) -> ReadingStatus<T> {
+        let by = match readings.output {
             None => {
-                self.silent_for = self.silent_for.saturating_add(1);
-                return Screened::NotUsed;
+                self.silent_periods = self.silent_periods.saturating_add(1);
+                return ReadingStatus::Rejected;
             }
-            Some(Advance::By(by)) => by,
-            Some(advance) => return self.screen_odd(advance, both_encoders),
+            Some(CountChange::By(by)) => by,
+            Some(advance) => return self.check_distant_reading(advance, both_encoders),
         };
-        self.silent_for = 0;
-        self.unmoved_for = if by == 0 { self.unmoved_for.saturating_add(1) } else { 0 };
-        let used = if both_encoders { Screened::Used } else { Screened::NotUsed };
+        self.silent_periods = 0;
+        self.standstill_periods = if by == 0 { self.standstill_periods.saturating_add(1) } else { 0 };
+        let status = if both_encoders { ReadingStatus::Accepted } else { ReadingStatus::Rejected };
         let clock = &tables.clock;
-        let beyond = sensed.output_interval.wrapping_sub(clock.shortest);
+        let beyond = readings.output_interval.wrapping_sub(clock.shortest);
         if beyond > clock.longer {
-            self.plausibility.miss(by, beyond > clock.period.saturating_mul(SPEED_KEPT));
-            return used;
+            self.plausibility.skip_irregular(by, beyond > clock.period.saturating_mul(OUTPUT_FAULT.speed_kept_periods));
+            return status;
         }
-        match self.plausibility.take(&tables.supervisor, by) {
-            Verdict::Plausible => used,
-            Verdict::Suspect => Screened::NotUsed,
-            Verdict::Implausible => self.implausible(both_encoders),
+        match self.plausibility.check(&tables.supervisor, by) {
+            PlausibilityResult::Plausible => status,
+            PlausibilityResult::Suspect => ReadingStatus::Rejected,
+            PlausibilityResult::Implausible => self.exclude_implausible(both_encoders),
         }
     }
 
     /// Handles the first reading, and a reading far from the last one.
     #[cold]
-    fn screen_odd(&mut self, advance: Advance, both_encoders: bool) -> Screened<T> {
-        self.silent_for = 0;
-        self.unmoved_for = 0;
+    fn check_distant_reading(&mut self, advance: CountChange, both_encoders: bool) -> ReadingStatus<T> {
+        self.silent_periods = 0;
+        self.standstill_periods = 0;
         match advance {
-            Advance::Began => Screened::First,
-            Advance::Jumped(_) if both_encoders => {
-                self.plausibility.lose();
-                Screened::GivenUp(OutputFault::OutOfRange, None)
+            CountChange::First => ReadingStatus::First,
+            CountChange::Jumped(_) if both_encoders => {
+                self.plausibility.reset_speed();
+                ReadingStatus::Excluded(OutputFault::OutOfRange, None)
             }
-            Advance::Jumped(_) | Advance::Implausible | Advance::By(_) => Screened::NotUsed,
+            CountChange::Jumped(_) | CountChange::Implausible | CountChange::By(_) => ReadingStatus::Rejected,
         }
     }
 
     /// Excludes the encoder after readings that no link can follow.
     #[cold]
-    fn implausible(&mut self, both_encoders: bool) -> Screened<T> {
-        let last = self.plausibility.speed().map(|speed| LastMotion { ahead: self.plausibility.ahead(), speed });
-        let frozen = last.is_some() && self.plausibility.stands_still();
-        self.plausibility.lose();
+    fn exclude_implausible(&mut self, both_encoders: bool) -> ReadingStatus<T> {
+        let last = self.plausibility.speed().map(|speed| LastMotion { lead: self.plausibility.lead(), speed });
+        let frozen = last.is_some() && self.plausibility.is_standstill();
+        self.plausibility.reset_speed();
         if both_encoders {
-            Screened::GivenUp(if frozen { OutputFault::Frozen } else { OutputFault::OutOfRange }, last)
+            ReadingStatus::Excluded(if frozen { OutputFault::Frozen } else { OutputFault::OutOfRange }, last)
         } else {
-            Screened::NotUsed
+            ReadingStatus::Rejected
         }
     }
 
     /// Judges the deflection. Worn teeth extend its range step by step; a slipping encoder makes the deflection jump. A
     /// link that sticks beyond a half-gap estimated too small looks like a frozen encoder until the deflection exceeds
-    /// possible wear. `unwound` is the deflection less wind-up [m].
-    pub fn judge<const P: usize>(
+    /// possible wear. `unwound_deflection` is the deflection less wind-up [m].
+    pub fn check_deflection<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
-        fused: &Fused<T>,
-        learnt: &Learnt<T, P>,
-        unwound: T,
+        measurement: &MeshMeasurement<T>,
+        estimator: &ParameterEstimator<T, P>,
+        unwound_deflection: T,
         both_encoders: bool,
     ) -> Option<OutputFault> {
         let table = &tables.supervisor;
-        let deflection = fused.of_teeth();
-        let [half_gap, _] = learnt.shape();
-        if self.unmoved_for == 0 || core::mem::take(&mut self.found) {
-            self.stood_at = unwound;
+        let deflection = measurement.tooth_deflection();
+        let [half_gap, _] = estimator.half_gap_and_compliance();
+        if self.standstill_periods == 0 || core::mem::take(&mut self.deflection_unknown) {
+            self.standstill_deflection = unwound_deflection;
         }
         let by = deflection - core::mem::replace(&mut self.deflection, deflection);
         if !both_encoders {
             return None;
         }
-        let went_on = (unwound - self.stood_at).abs();
-        let range = if went_on > half_gap && outruns(tables, learnt, went_on, fused.force) {
-            Range::Impossible
-        } else if deflection.abs() < learnt.uncertainty.reach {
-            Range::Possible
+        let travel = (unwound_deflection - self.standstill_deflection).abs();
+        let range = if travel > half_gap && exceeds_gap(tables, estimator, travel, measurement.force) {
+            DeflectionRange::Impossible
+        } else if deflection.abs() < estimator.uncertainty.reach {
+            DeflectionRange::Possible
         } else {
-            far_range(learnt, deflection, fused.force)
+            classify_deflection(estimator, deflection, measurement.force)
         };
         // A deflection that jumps to the end of its range may continue beyond it.
-        let near = deflection.abs() + table.margin > learnt.uncertainty.reach;
-        self.jumped = near && (self.jumped || by.abs() > table.margin);
-        let beyond = if range == Range::Possible {
-            self.outside_for = 0;
+        let is_near_end = deflection.abs() + table.margin > estimator.uncertainty.reach;
+        self.has_jumped = is_near_end && (self.has_jumped || by.abs() > table.margin);
+        let fault = if range == DeflectionRange::Possible {
+            self.out_of_range_for = 0;
             None
         } else {
-            self.beyond(table, range)
+            self.count_out_of_range(table, range)
         };
-        if self.silent_for > table.silent_after { Some(OutputFault::Silent) } else { beyond }
+        if self.silent_periods > table.silent_after { Some(OutputFault::Silent) } else { fault }
     }
 
     /// Counts one more period with the deflection out of range.
     #[cold]
-    fn beyond(&mut self, table: &SupervisorTable<T>, range: Range) -> Option<OutputFault> {
-        self.outside_for = self.outside_for.saturating_add(1);
-        if self.outside_for < table.failed_after || range == Range::Worn && !self.jumped {
+    fn count_out_of_range(&mut self, table: &SupervisorTable<T>, range: DeflectionRange) -> Option<OutputFault> {
+        self.out_of_range_for = self.out_of_range_for.saturating_add(1);
+        if self.out_of_range_for < table.failed_after || range == DeflectionRange::Worn && !self.has_jumped {
             None
-        } else if self.unmoved_for >= table.failed_after {
+        } else if self.standstill_periods >= table.failed_after {
             Some(OutputFault::Frozen)
         } else {
             Some(OutputFault::OutOfRange)
@@ -252,49 +264,57 @@ impl<T: Real> OutputFaultDetector<T> {
 /// Returns true if one shaft has moved by more than gap and wind-up allow while the other's counts stood still (O24).
 /// The test needs no knowledge of the flank.
 #[cold]
-pub fn outruns<T: Real, const P: usize>(
+pub fn exceeds_gap<T: Real, const P: usize>(
     tables: &ObserverTables<T>,
-    learnt: &Learnt<T, P>,
-    went_on: T,
+    estimator: &ParameterEstimator<T, P>,
+    travel: T,
     force: T,
 ) -> bool {
-    let [half_gap, _] = learnt.shape();
-    let [half_gap_variance, ..] = learnt.uncertainty.variances;
-    let by_learnt = half_gap + T::THREE * half_gap_variance.square_root();
-    let by_guess = learnt.uncertainty.guessed_half_gap;
-    let widest = if by_guess > by_learnt { by_guess } else { by_learnt };
-    went_on > T::TWO * widest + slack(tables, learnt, force)
+    let [half_gap, _] = estimator.half_gap_and_compliance();
+    let [half_gap_variance, ..] = estimator.uncertainty.variances;
+    let by_estimate = half_gap + T::THREE * half_gap_variance.square_root();
+    let by_guess = estimator.uncertainty.guessed_half_gap;
+    let widest = if by_guess > by_estimate { by_guess } else { by_estimate };
+    travel > T::TWO * widest + deflection_tolerance(tables, estimator, force)
 }
 
 /// Tolerance of a change of the deflection beside gap and wind-up [m].
-pub fn slack<T: Real, const P: usize>(tables: &ObserverTables<T>, learnt: &Learnt<T, P>, force: T) -> T {
+pub fn deflection_tolerance<T: Real, const P: usize>(
+    tables: &ObserverTables<T>,
+    estimator: &ParameterEstimator<T, P>,
+    force: T,
+) -> T {
     let count = tables.counts.output.angle * tables.levers.output;
-    count + T::TWO * (tables.supervisor.margin + learnt.uncertainty.softness * force.abs())
+    count + T::TWO * (tables.supervisor.margin + estimator.uncertainty.compliance_uncertainty * force.abs())
 }
 
 /// Returns true if a deflection of the teeth [m] lies between the flanks or beyond a flank by at most the wind-up of a
 /// force [N].
-pub fn is_possible<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> bool {
-    far_range(learnt, deflection, force) == Range::Possible
+pub fn is_possible<T: Real, const P: usize>(estimator: &ParameterEstimator<T, P>, deflection: T, force: T) -> bool {
+    classify_deflection(estimator, deflection, force) == DeflectionRange::Possible
 }
 
 /// Returns true if a deflection of the teeth [m] lies in its range, or beyond it by no more than wear or wind-up.
-pub fn is_near<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T) -> bool {
-    far_range(learnt, deflection, T::ZERO) != Range::Impossible
+pub fn is_within_wear<T: Real, const P: usize>(estimator: &ParameterEstimator<T, P>, deflection: T) -> bool {
+    classify_deflection(estimator, deflection, T::ZERO) != DeflectionRange::Impossible
 }
 
 /// Range of a deflection beyond the flanks.
 #[cold]
-fn far_range<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> Range {
-    let [half_gap, compliance] = learnt.shape();
+fn classify_deflection<T: Real, const P: usize>(
+    estimator: &ParameterEstimator<T, P>,
+    deflection: T,
+    force: T,
+) -> DeflectionRange {
+    let [half_gap, compliance] = estimator.half_gap_and_compliance();
     let (beyond, force) = if deflection > T::ZERO { (deflection, force) } else { (-deflection, -force) };
     let wind_up = if force > T::ZERO { compliance * force } else { T::ZERO };
-    let beyond = beyond - wind_up - learnt.uncertainty.reach;
+    let beyond = beyond - wind_up - estimator.uncertainty.reach;
     if beyond < T::ZERO {
-        Range::Possible
+        DeflectionRange::Possible
     } else if beyond < half_gap {
-        Range::Worn
+        DeflectionRange::Worn
     } else {
-        Range::Impossible
+        DeflectionRange::Impossible
     }
 }

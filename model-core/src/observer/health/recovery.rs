@@ -1,83 +1,166 @@
 //! Readmission of an excluded output encoder, once it turns with the motor again.
 
+use super::thresholds::OUTPUT_FAULT;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::SupervisorTable;
 
-/// Factor on the time of agreement for an encoder that turns with the motor at another constant offset [-].
-const OTHERWISE: u16 = 3;
-
 /// Kind of return of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Return {
+pub enum Readmission {
     /// The encoder agrees with the estimated parameters.
-    AsLearnt,
+    SameOffset,
     /// The encoder turns with the motor at another offset than the estimated one.
-    Otherwise,
+    NewOffset,
 }
 
-/// Evidence for an excluded encoder.
+/// Evidence of a learning interval on an excluded encoder.
 #[derive(Debug, Clone, Copy)]
-pub struct Recovery<T: Real> {
-    /// Learning intervals in motion with agreement.
-    agreed_for: u16,
-    /// Learning intervals in motion at a constant offset.
-    steady_for: u16,
-    /// Constant offset: deflection less the predicted deflection, on the back flank and on the drive flank [m].
-    steady: [T; 2],
-    /// Position of the output when it last moved [2^-32 turns].
-    place: u32,
+pub struct OutputEvidence<T: Real> {
+    /// In settled contact the flank, and the encoder's deflection less the predicted deflection [m].
+    pub settled: Option<(Flank, T)>,
+    /// Tolerance of agreement [m].
+    pub tolerance: T,
+    /// Outside settled contact, true if the deflection lies between the flanks.
+    pub lies_in_gap: bool,
+    /// Position of the output, if it is read [2^-32 turns].
+    pub position: Option<u32>,
 }
 
-impl<T: Real> Recovery<T> {
+/// Readmission of the output encoder: agreement so far.
+#[derive(Debug, Clone, Copy)]
+pub struct OutputRecovery<T: Real> {
+    /// Learning intervals in motion with agreement.
+    agreeing_intervals: u16,
+    /// Learning intervals in motion at a constant offset.
+    steady_intervals: u16,
+    /// Constant offset: deflection less the predicted deflection, on the back flank and on the drive flank [m].
+    steady_offsets: [T; 2],
+    /// Position of the output when it last moved [2^-32 turns].
+    position: u32,
+}
+
+impl<T: Real> OutputRecovery<T> {
     pub fn new() -> Self {
-        Self { agreed_for: 0, steady_for: 0, steady: [T::ZERO; 2], place: 0 }
+        Self { agreeing_intervals: 0, steady_intervals: 0, steady_offsets: [T::ZERO; 2], position: 0 }
     }
 
     /// Starts anew after an exclusion.
-    pub fn begin(&mut self) {
-        *self = Self { place: self.place, ..Self::new() };
+    pub fn reset(&mut self) {
+        *self = Self { position: self.position, ..Self::new() };
     }
 
-    /// Judges one learning interval. `settled`: in settled contact the flank and the encoder's deflection less the
-    /// predicted deflection [m]. `room`: tolerance of agreement [m]. `between`: outside settled contact, true if the
-    /// deflection lies between the flanks. `place`: position of the output, if it is read [2^-32 turns].
-    pub fn step(
-        &mut self,
-        table: &SupervisorTable<T>,
-        settled: Option<(Flank, T)>,
-        room: T,
-        between: bool,
-        place: Option<u32>,
-    ) -> Option<Return> {
-        let agrees = if let Some((flank, beyond)) = settled {
-            let [back, drive] = &mut self.steady;
-            let steady = if flank == Flank::Drive { drive } else { back };
-            if (beyond - *steady).abs() > room {
-                *steady = beyond;
-                self.steady_for = 0;
+    /// Judges one learning interval.
+    pub fn step(&mut self, table: &SupervisorTable<T>, evidence: &OutputEvidence<T>) -> Option<Readmission> {
+        let agrees = if let Some((flank, offset)) = evidence.settled {
+            let [back, drive] = &mut self.steady_offsets;
+            let steady_offset = if flank == Flank::Drive { drive } else { back };
+            if (offset - *steady_offset).abs() > evidence.tolerance {
+                *steady_offset = offset;
+                self.steady_intervals = 0;
             }
-            beyond.abs() < room
+            offset.abs() < evidence.tolerance
         } else {
-            between
+            evidence.lies_in_gap
         };
         if !agrees {
-            self.agreed_for = 0;
+            self.agreeing_intervals = 0;
         }
         // A stationary encoder that flickers does not turn.
-        if let Some(place) = place
-            && (place.wrapping_sub(self.place) as i32).unsigned_abs() >= table.moved
+        if let Some(position) = evidence.position
+            && (position.wrapping_sub(self.position) as i32).unsigned_abs() >= table.moved
         {
-            self.place = place;
-            self.steady_for = self.steady_for.saturating_add(u16::from(settled.is_some()));
-            self.agreed_for = self.agreed_for.saturating_add(u16::from(agrees));
+            self.position = position;
+            self.steady_intervals = self.steady_intervals.saturating_add(u16::from(evidence.settled.is_some()));
+            self.agreeing_intervals = self.agreeing_intervals.saturating_add(u16::from(agrees));
         }
-        if self.agreed_for >= table.trusted_after {
-            Some(Return::AsLearnt)
-        } else if self.steady_for >= table.trusted_after.saturating_mul(OTHERWISE) {
-            Some(Return::Otherwise)
+        if self.agreeing_intervals >= table.trusted_after {
+            Some(Readmission::SameOffset)
+        } else if self.steady_intervals >= table.trusted_after.saturating_mul(OUTPUT_FAULT.new_offset_factor) {
+            Some(Readmission::NewOffset)
         } else {
             None
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::supervisor;
+
+    const TOLERANCE: f32 = 10e-6;
+    /// Learning intervals of agreement before readmission, and travel that proves motion, in the test table.
+    const INTERVALS: u16 = 5;
+    const TRAVEL: u32 = 1000;
+
+    /// Steps `intervals` in motion with an offset on the drive flank, and returns the last result.
+    fn steps(recovery: &mut OutputRecovery<f32>, offset: f32, intervals: u16, travel: u32) -> Option<Readmission> {
+        let mut result = None;
+        for _ in 0..intervals {
+            let position = recovery.position.wrapping_add(travel);
+            let settled = Some((Flank::Drive, offset));
+            let evidence =
+                OutputEvidence { settled, tolerance: TOLERANCE, lies_in_gap: false, position: Some(position) };
+            result = recovery.step(&supervisor(), &evidence);
+        }
+        result
+    }
+
+    #[test]
+    fn agreement_in_motion_readmits() {
+        let mut recovery = OutputRecovery::new();
+        assert_eq!(steps(&mut recovery, 9e-6, INTERVALS - 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 9e-6, 1, TRAVEL), Some(Readmission::SameOffset));
+    }
+
+    #[test]
+    fn stationary_encoder_is_not_readmitted() {
+        let mut recovery = OutputRecovery::new();
+        assert_eq!(steps(&mut recovery, 0.0, 100, TRAVEL - 1), None);
+    }
+
+    #[test]
+    fn constant_offset_readmits_later() {
+        let mut recovery = OutputRecovery::new();
+        let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
+        assert_eq!(steps(&mut recovery, 50e-6, needed - 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 50e-6, 1, TRAVEL), Some(Readmission::NewOffset));
+    }
+
+    #[test]
+    fn drifting_offset_starts_anew() {
+        let mut recovery = OutputRecovery::new();
+        let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
+        steps(&mut recovery, 50e-6, needed - 1, TRAVEL);
+        assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 61e-6, needed - 2, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), Some(Readmission::NewOffset));
+    }
+
+    #[test]
+    fn disagreement_clears_agreement() {
+        let mut recovery = OutputRecovery::new();
+        steps(&mut recovery, 0.0, INTERVALS - 1, TRAVEL);
+        steps(&mut recovery, 11e-6, 1, TRAVEL);
+        assert_eq!(steps(&mut recovery, 0.0, INTERVALS - 1, TRAVEL), None);
+    }
+
+    #[test]
+    fn offset_of_nan_is_not_readmitted() {
+        let mut recovery = OutputRecovery::new();
+        assert_eq!(steps(&mut recovery, f32::NAN, INTERVALS, TRAVEL), None);
+    }
+
+    #[test]
+    fn open_gap_needs_no_contact() {
+        let mut recovery = OutputRecovery::<f32>::new();
+        let mut result = None;
+        for interval in 1..=u32::from(INTERVALS) {
+            let position = Some(interval * TRAVEL);
+            let evidence = OutputEvidence { settled: None, tolerance: TOLERANCE, lies_in_gap: true, position };
+            result = recovery.step(&supervisor(), &evidence);
+        }
+        assert_eq!(result, Some(Readmission::SameOffset));
     }
 }

@@ -16,18 +16,10 @@
 //! compensation is therefore asked for no torque in half of the blocks. A load stronger than the motor looks like a
 //! wrong sign until this test; the test then votes for the right sign.
 
+use super::thresholds::TorqueResponseThresholds;
 use crate::numbers::Real;
 use crate::observer::estimates::TorqueResponse;
 use crate::observer::tables::ResponseTable;
-
-/// Net votes for the right sign after which the check ends.
-const RIGHT: i8 = 6;
-
-/// Net votes for the wrong sign from which a motor that runs against its torque is declared reversed.
-const WRONG: i8 = 4;
-
-/// Net blocks with the motor accelerating against the torque from which the motor runs against its torque.
-const AGAINST: u8 = 2;
 
 /// Blocks between two compared torques.
 const APART: usize = 2;
@@ -37,19 +29,16 @@ const APART: usize = 2;
 const PATTERN: u32 = 0b00_0011_0001_1110_0111;
 const PATTERN_BLOCKS: u8 = 18;
 
-/// Consecutive blocks without missing readings and without a tooth impact that a comparison needs.
-const WHOLE: u8 = 4;
-
 /// Votes and their evidence.
 #[derive(Debug, Clone, Copy)]
-pub struct ResponseCheck<T: Real> {
+pub struct TorqueResponseCheck<T: Real> {
     response: TorqueResponse,
     /// Votes for the right sign less votes for the wrong sign.
     votes: i8,
     /// Blocks in which the motor accelerated against the torque, less all other blocks with a large torque.
-    against: u8,
+    against_torque: u8,
     /// Place in the test pattern, from 1; 0 without a test.
-    tested: u8,
+    test_block: u8,
     /// Periods in this block.
     periods: u16,
     /// Sum of the torque in this block [N m].
@@ -57,30 +46,28 @@ pub struct ResponseCheck<T: Real> {
     /// Angle turned in this block [rad].
     turned: T,
     /// Sum of the torque and angle turned of the last block.
-    before: [T; 2],
+    last_block: [T; 2],
     /// X and A of the last two blocks, the latest first [N m].
     pairs: [[T; 2]; APART],
     /// Consecutive blocks without a tooth impact, saturated.
-    whole: u8,
+    undisturbed_blocks: u8,
 }
 
-impl<T: Real> ResponseCheck<T> {
-    /// Least change of acceleration that votes, over the change of torque [-]: a link six times as heavy as the joint
-    /// file states.
-    const LEAST: T = T::SIXTH;
+impl<T: Real> TorqueResponseCheck<T> {
+    const LIMITS: TorqueResponseThresholds<T> = TorqueResponseThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {
             response: TorqueResponse::Unknown,
             votes: 0,
-            against: 0,
-            tested: 0,
+            against_torque: 0,
+            test_block: 0,
             periods: 0,
             torque: T::ZERO,
             turned: T::ZERO,
-            before: [T::ZERO; 2],
+            last_block: [T::ZERO; 2],
             pairs: [[T::ZERO; 2]; APART],
-            whole: 0,
+            undisturbed_blocks: 0,
         }
     }
 
@@ -111,15 +98,15 @@ impl<T: Real> ResponseCheck<T> {
         self.turned += turned;
         self.periods += 1;
         if self.periods >= table.block {
-            self.close(table);
+            self.close_block(table);
         }
     }
 
     /// Ends a block.
     #[cold]
-    fn close(&mut self, table: &ResponseTable<T>) {
+    fn close_block(&mut self, table: &ResponseTable<T>) {
         let now = [self.torque, self.turned];
-        let [torque_before, turned_before] = core::mem::replace(&mut self.before, now);
+        let [torque_before, turned_before] = core::mem::replace(&mut self.last_block, now);
         (self.torque, self.turned, self.periods) = (T::ZERO, T::ZERO, 0);
         // (1)
         let mean = T::HALF * table.per_block * (now[0] + torque_before);
@@ -127,41 +114,47 @@ impl<T: Real> ResponseCheck<T> {
         let [last, [mean_then, acceleration_then]] = self.pairs;
         self.pairs = [[mean, acceleration], last];
         // A tooth impact accelerates the motor more than the torque can.
-        let most = table.alone * if mean.abs() > table.large { mean.abs() } else { table.large };
-        self.whole = if acceleration.abs() > most { 0 } else { self.whole.saturating_add(1).min(WHOLE) };
-        if self.whole < WHOLE {
+        let largest = table.alone * if mean.abs() > table.large { mean.abs() } else { table.large };
+        self.undisturbed_blocks = if acceleration.abs() > largest {
+            0
+        } else {
+            self.undisturbed_blocks.saturating_add(1).min(Self::LIMITS.undisturbed_blocks)
+        };
+        if self.undisturbed_blocks < Self::LIMITS.undisturbed_blocks {
             self.response = TorqueResponse::Unknown;
             return;
         }
         if now[1] * turned_before < T::ZERO {
             // A motor that reverses does not run away.
-            (self.against, self.tested) = (0, 0);
+            (self.against_torque, self.test_block) = (0, 0);
         } else if mean.abs() > table.large {
-            let is_against = now[1] * mean < T::ZERO && acceleration * mean < -Self::LEAST * mean * mean;
-            self.against = if is_against { self.against.saturating_add(1) } else { self.against.saturating_sub(1) };
+            let is_against = now[1] * mean < T::ZERO && acceleration * mean < -Self::LIMITS.min_response * mean * mean;
+            self.against_torque =
+                if is_against { self.against_torque.saturating_add(1) } else { self.against_torque.saturating_sub(1) };
         }
         // (2)
         self.vote(table, mean - mean_then, acceleration - acceleration_then);
-        let tests = self.tests();
+        let is_torque_free = self.advance_test();
         self.response = match self.votes {
-            votes if votes >= RIGHT => TorqueResponse::Right,
-            votes if votes <= -WRONG && self.tested > 0 => TorqueResponse::Reversed,
-            _ if tests => TorqueResponse::Tested,
+            votes if votes >= Self::LIMITS.right_votes => TorqueResponse::Right,
+            votes if votes <= -Self::LIMITS.wrong_votes && self.test_block > 0 => TorqueResponse::Reversed,
+            _ if is_torque_free => TorqueResponse::Tested,
             _ => TorqueResponse::Unknown,
         };
     }
 
     /// Returns true if the next block carries no torque. A test starts once the motor runs against its torque and lasts
     /// until it no longer does.
-    fn tests(&mut self) -> bool {
-        let goes_on = self.against >= AGAINST || self.tested > 0 && self.against > 0;
+    fn advance_test(&mut self) -> bool {
+        let continues =
+            self.against_torque >= Self::LIMITS.against_blocks || self.test_block > 0 && self.against_torque > 0;
         // A load that sets in drives the motor against a growing torque: only votes during a test count for the wrong
         // sign.
-        if self.tested == 0 {
+        if self.test_block == 0 {
             self.votes = self.votes.max(0);
         }
-        self.tested = if goes_on { self.tested % PATTERN_BLOCKS + 1 } else { 0 };
-        goes_on && PATTERN >> (self.tested - 1) & 1 == 1
+        self.test_block = if continues { self.test_block % PATTERN_BLOCKS + 1 } else { 0 };
+        continues && PATTERN >> (self.test_block - 1) & 1 == 1
     }
 
     /// Votes on a change of torque and the resulting change of acceleration, as a torque [N m].
@@ -169,12 +162,107 @@ impl<T: Real> ResponseCheck<T> {
         if torque.abs() <= table.large {
             return;
         }
-        let least = Self::LEAST * torque.abs();
-        let along = if torque > T::ZERO { acceleration } else { -acceleration };
-        if along > least {
+        let smallest = Self::LIMITS.min_response * torque.abs();
+        let response = if torque > T::ZERO { acceleration } else { -acceleration };
+        if response > smallest {
             self.votes = self.votes.saturating_add(1);
-        } else if along < -least {
+        } else if response < -smallest {
             self.votes = self.votes.saturating_sub(1);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BLOCK: u16 = 4;
+
+    fn table() -> ResponseTable<f32> {
+        // A motor whose speed rises by 1/16 rad per period and newton metre has the inertia 1.
+        ResponseTable { block: BLOCK, per_block: 0.25, inertia: 1.0, large: 0.5, alone: 4.0 }
+    }
+
+    /// Drives a motor for `blocks` blocks, without torque while the check asks for it. `sign`: sign of the response.
+    fn drive(check: &mut TorqueResponseCheck<f32>, sign: f32, blocks: u16, torque: impl Fn(u16) -> f32) {
+        let mut speed = 0.0;
+        for period in 0..blocks * BLOCK {
+            let wanted = torque(period / BLOCK);
+            let torque = if check.response() == TorqueResponse::Tested { 0.0 } else { wanted };
+            speed += sign * torque / 16.0;
+            check.step(&table(), torque, speed);
+        }
+    }
+
+    /// Torque that changes its sign every three blocks.
+    fn swinging(block: u16) -> f32 {
+        if block / 3 % 2 == 0 { 1.0 } else { -1.0 }
+    }
+
+    #[test]
+    fn right_sign_is_found() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, 1.0, 40, swinging);
+        assert_eq!(check.response(), TorqueResponse::Right);
+    }
+
+    #[test]
+    fn right_sign_needs_votes() {
+        let mut check = TorqueResponseCheck::new();
+        let votes = TorqueResponseThresholds::<f32>::TUNED.right_votes;
+        check.votes = votes - 2;
+        check.vote(&table(), 1.0, 1.0);
+        assert_eq!(check.votes, votes - 1);
+        check.vote(&table(), -1.0, -1.0);
+        assert_eq!(check.votes, votes);
+        check.vote(&table(), 1.0, -1.0);
+        assert_eq!(check.votes, votes - 1);
+    }
+
+    #[test]
+    fn reversed_sign_is_found_under_constant_torque() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, -1.0, 60, |_| 1.0);
+        assert_eq!(check.response(), TorqueResponse::Reversed);
+    }
+
+    #[test]
+    fn small_torque_does_not_vote() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, 1.0, 60, |block| 0.24 * swinging(block));
+        assert_eq!((check.response(), check.votes), (TorqueResponse::Unknown, 0));
+    }
+
+    #[test]
+    fn weak_response_does_not_vote() {
+        let mut check = TorqueResponseCheck::new();
+        check.vote(&table(), 1.0, 0.16);
+        check.vote(&table(), 1.0, -0.16);
+        assert_eq!(check.votes, 0);
+        check.vote(&table(), 1.0, 0.17);
+        assert_eq!(check.votes, 1);
+    }
+
+    #[test]
+    fn tooth_impact_pauses_check() {
+        let mut check = TorqueResponseCheck::new();
+        drive(&mut check, 1.0, 6, swinging);
+        assert_eq!(check.undisturbed_blocks, 4);
+        for _ in 0..BLOCK {
+            check.step(&table(), 1.0, 10.0);
+        }
+        assert_eq!((check.undisturbed_blocks, check.response()), (0, TorqueResponse::Unknown));
+    }
+
+    #[test]
+    fn interrupt_keeps_votes_and_decision() {
+        let mut check = TorqueResponseCheck::<f32>::new();
+        check.votes = 3;
+        check.response = TorqueResponse::Tested;
+        check.interrupt();
+        assert_eq!((check.votes, check.response()), (3, TorqueResponse::Unknown));
+        check.response = TorqueResponse::Reversed;
+        check.interrupt();
+        assert_eq!(check.response(), TorqueResponse::Reversed);
     }
 }

@@ -1,13 +1,17 @@
-//! Integer counts of both shafts, exact over any number of turns and over wrap-around, and their difference (O1): motor
-//! less ratio times output. D = `difference`, n_m C_o q = motor counts times `motor_weight`, n_o C_m p = output counts
-//! times `output_weight`, both without common divisors. Angles beyond a turn never become floating point here.
+//! Integer counts of both shafts, exact over any number of turns and over wrap-around, and their difference, motor less
+//! ratio times output. Angles beyond a turn never become floating point here.
+//!
+//! ```text
+//! (O1)  D = n_m C_o q - n_o C_m p,   unit 1/(C_m C_o q) motor turn
+//! ```
+//!
+//! Symbols: D = `difference`, n_m = counts of `motor`, n_o = counts of `output`, C_o q = `motor_weight`, C_m p =
+//! `output_weight`, both weights without common divisors.
 
+use super::thresholds::COUNTS;
 use crate::numbers::Real;
 use crate::observer::samples::Reading;
 use crate::observer::tables::{CountTable, EncoderTable};
-
-/// Consecutive readings rejected as too far away; the next such reading counts as a jump of the encoder.
-const BELIEVED_AFTER: u8 = 3;
 
 /// Position of one shaft.
 #[derive(Debug, Clone, Copy, Default)]
@@ -15,15 +19,15 @@ pub struct Counter {
     raw: u32,
     place: u32,
     turns: i32,
-    doubted: u8,
+    rejected: u8,
     began: bool,
 }
 
 /// Result of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Advance {
+pub enum CountChange {
     /// First reading.
-    Began,
+    First,
     /// Counts since the last accepted reading.
     By(i32),
     /// Too far away: rejected, the motion is extrapolated.
@@ -34,38 +38,38 @@ pub enum Advance {
 
 impl Counter {
     #[inline]
-    pub fn take<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32) -> Advance {
+    pub fn read<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32) -> CountChange {
         // Bring raw counts outside their range into it.
         let raw = if raw > table.last { raw.checked_rem(table.wraps_at).unwrap_or(raw) } else { raw };
-        let by = difference(raw, self.raw, table);
+        let by = shortest_difference(raw, self.raw, table);
         if !self.began || by.unsigned_abs() > table.fastest {
-            return self.take_odd(table, raw, by);
+            return self.read_distant(table, raw, by);
         }
-        self.move_to(table, raw, by);
-        Advance::By(by)
+        self.accept(table, raw, by);
+        CountChange::By(by)
     }
 
     /// Handles the first reading or a distant reading.
     #[cold]
-    fn take_odd<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) -> Advance {
+    fn read_distant<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) -> CountChange {
         if !self.began {
             self.began = true;
             self.raw = raw;
             self.place = raw.checked_rem(table.turn).unwrap_or(0);
-            return Advance::Began;
+            return CountChange::First;
         }
-        let within = by.unsigned_abs() <= table.fastest.saturating_mul(u32::from(self.doubted) + 1);
-        if !within && self.doubted < BELIEVED_AFTER {
-            self.doubted += 1;
-            return Advance::Implausible;
+        let within = by.unsigned_abs() <= table.fastest.saturating_mul(u32::from(self.rejected) + 1);
+        if !within && self.rejected < COUNTS.rejections_before_jump {
+            self.rejected += 1;
+            return CountChange::Implausible;
         }
-        self.move_to(table, raw, by);
-        if within { Advance::By(by) } else { Advance::Jumped(by) }
+        self.accept(table, raw, by);
+        if within { CountChange::By(by) } else { CountChange::Jumped(by) }
     }
 
-    fn move_to<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) {
+    fn accept<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) {
         self.raw = raw;
-        self.doubted = 0;
+        self.rejected = 0;
         self.advance(table, by);
     }
 
@@ -85,7 +89,7 @@ impl Counter {
     fn turn<T: Real>(&mut self, table: &EncoderTable<T>, by: i64) {
         let turn = i64::from(table.turn);
         let place = i64::from(self.place).wrapping_add(by);
-        let turns = whole(place, turn);
+        let turns = floor_div(place, turn);
         self.place = (place - turns * turn) as u32;
         self.turns = self.turns.wrapping_add(turns as i32);
     }
@@ -144,25 +148,25 @@ fn half(units: i64) -> i64 {
 }
 
 /// Quotient rounded down, so that the remainder is not negative; zero for a divisor of zero.
-fn whole(units: i64, part: i64) -> i64 {
+fn floor_div(units: i64, part: i64) -> i64 {
     let Some(towards_zero) = quotient(units, part) else { return 0 };
     if towards_zero.wrapping_mul(part) > units { towards_zero.wrapping_sub(1) } else { towards_zero }
 }
 
 /// Remainder of the division rounded down.
-fn rest(units: i64, part: i64) -> i64 {
-    units.wrapping_sub(whole(units, part).wrapping_mul(part))
+fn floor_mod(units: i64, part: i64) -> i64 {
+    units.wrapping_sub(floor_div(units, part).wrapping_mul(part))
 }
 
 /// Multiple of the raw range, in counts, nearest to `units` of the difference; `weight` is the units per count.
-fn whole_ranges<T: Real>(units: i64, table: &EncoderTable<T>, weight: i64) -> i64 {
+fn nearest_range_multiple<T: Real>(units: i64, table: &EncoderTable<T>, weight: i64) -> i64 {
     let range = i64::from(table.last).wrapping_add(1);
     let of_range = range.wrapping_mul(weight);
-    whole(units.wrapping_add(half(of_range)), of_range).wrapping_mul(range)
+    floor_div(units.wrapping_add(half(of_range)), of_range).wrapping_mul(range)
 }
 
 /// Counts from `before` to `now` the shorter way round; both lie within their range.
-pub fn difference<T: Real>(now: u32, before: u32, table: &EncoderTable<T>) -> i32 {
+pub fn shortest_difference<T: Real>(now: u32, before: u32, table: &EncoderTable<T>) -> i32 {
     let up = now.wrapping_sub(before);
     let up = if now < before { up.wrapping_add(table.wraps_at) } else { up };
     (if up > table.last / 2 { up.wrapping_sub(table.wraps_at) } else { up }) as i32
@@ -179,124 +183,140 @@ pub struct Counts {
     /// Difference at the start, modulo whole turns: position of the encoders' zeros.
     pub start: i64,
     /// The start was restored from memory.
-    referred: bool,
+    has_reference: bool,
     /// Implied output, which follows the motor by whole counts, and the remaining difference.
     implied: Option<(Counter, i64)>,
-    fresh_time: u32,
+    output_time: u32,
     motor_time: u32,
     /// State while the motor encoder is excluded.
-    doubt: Option<Doubt>,
+    suspicion: Option<Suspicion>,
 }
 
 /// Memory of an excluded motor encoder.
 #[derive(Debug, Clone, Copy)]
-struct Doubt {
+struct Suspicion {
     /// Difference before the exclusion.
     difference: i64,
     /// Travel of the motor counts since then, as far as raw counts show [units of the difference].
-    went: i64,
+    travel: i64,
 }
 
 /// Result of the readings of one period.
 #[derive(Debug, Clone, Copy)]
-pub struct Taken {
-    pub motor: Advance,
+pub struct CountReadings {
+    pub motor: CountChange,
     /// `None` without a fresh reading.
-    pub output: Option<Advance>,
+    pub output: Option<CountChange>,
     /// Time from the previous fresh output reading, by time stamps [ticks].
-    pub apart: u32,
+    pub output_interval: u32,
     /// Time from the previous motor reading; 0 for a repeated reading [ticks].
-    pub motor_apart: u32,
+    pub motor_interval: u32,
     /// Travel of the output in use, measured or implied [counts].
-    pub turned: i32,
+    pub output_travel: i32,
 }
 
 impl Counts {
     // Inlined: the call with its arguments would cost some hundredths of the instructions of a period.
     #[inline(always)]
-    pub fn take<T: Real>(&mut self, table: &CountTable<T>, motor: Reading, output: Option<Reading>) -> Taken {
+    pub fn read_counts<T: Real>(
+        &mut self,
+        table: &CountTable<T>,
+        motor: Reading,
+        output: Option<Reading>,
+    ) -> CountReadings {
         let begins = !self.output.began;
-        let motor_apart = motor.time.wrapping_sub(core::mem::replace(&mut self.motor_time, motor.time));
-        let motor = self.motor.take(&table.motor, motor.counts);
-        let by = if let Advance::By(by) | Advance::Jumped(by) = motor {
+        let motor_interval = motor.time.wrapping_sub(core::mem::replace(&mut self.motor_time, motor.time));
+        let motor = self.motor.read(&table.motor, motor.counts);
+        let by = if let CountChange::By(by) | CountChange::Jumped(by) = motor {
             i64::from(by).wrapping_mul(table.motor_weight)
         } else {
             0
         };
-        let fresh = output.filter(|reading| table.has_output && (begins || reading.time != self.fresh_time));
-        let apart = fresh.map_or(0, |reading| reading.time.wrapping_sub(self.fresh_time));
+        let fresh = output.filter(|reading| table.has_output && (begins || reading.time != self.output_time));
+        let output_interval = fresh.map_or(0, |reading| reading.time.wrapping_sub(self.output_time));
         let output = fresh.map(|reading| {
-            self.fresh_time = reading.time;
-            self.output.take(&table.output, reading.counts)
+            self.output_time = reading.time;
+            self.output.read(&table.output, reading.counts)
         });
-        let turned = match output {
-            Some(Advance::By(by)) => by,
-            Some(Advance::Jumped(by)) => self.jump(table, by),
+        let output_travel = match output {
+            Some(CountChange::By(by)) => by,
+            Some(CountChange::Jumped(by)) => self.follow_output_jump(table, by),
             _ => 0,
         };
         self.difference =
-            self.difference.wrapping_add(by).wrapping_sub(i64::from(turned).wrapping_mul(table.output_weight));
+            self.difference.wrapping_add(by).wrapping_sub(i64::from(output_travel).wrapping_mul(table.output_weight));
         if begins && self.output.began {
-            self.begin(table);
+            self.set_start(table);
         }
-        let turned =
-            if self.implied.is_some() || self.doubt.is_some() { self.go_on(table, motor, by, turned) } else { turned };
-        Taken { motor, output, apart, motor_apart, turned }
+        let output_travel = if self.implied.is_some() || self.suspicion.is_some() {
+            self.advance_output_in_use(table, motor, by, output_travel)
+        } else {
+            output_travel
+        };
+        CountReadings { motor, output, output_interval, motor_interval, output_travel }
     }
 
     /// Advances an implied output, and the travel of an excluded motor encoder. `by` is the motor's travel in units of
-    /// the difference, `turned` the measured output's in counts. Returns the travel of the output in use [counts].
+    /// the difference, `output_travel` the measured output's in counts. Returns the travel of the output in use
+    /// [counts].
     #[cold]
-    fn go_on<T: Real>(&mut self, table: &CountTable<T>, motor: Advance, by: i64, turned: i32) -> i32 {
-        if let Some(doubt) = &mut self.doubt {
-            doubt.went = doubt.went.wrapping_add(by);
+    fn advance_output_in_use<T: Real>(
+        &mut self,
+        table: &CountTable<T>,
+        motor: CountChange,
+        by: i64,
+        output_travel: i32,
+    ) -> i32 {
+        if let Some(suspicion) = &mut self.suspicion {
+            suspicion.travel = suspicion.travel.wrapping_add(by);
         }
-        let followed = self.doubt.is_none() && matches!(motor, Advance::By(_));
+        let is_followed = self.suspicion.is_none() && matches!(motor, CountChange::By(_));
         match self.implied {
-            Some(_) if followed => self.follow(table, by),
+            Some(_) if is_followed => self.advance_implied(table, by),
             Some(_) => 0,
-            None => turned,
+            None => output_travel,
         }
     }
 
     /// Excludes the motor encoder; `last` is its advance in this period, which preceded the exclusion.
-    pub fn doubt_motor<T: Real>(&mut self, table: &CountTable<T>, last: Advance) {
-        if self.doubt.is_none() {
-            let by = if let Advance::Jumped(by) = last { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
-            self.doubt = Some(Doubt { difference: self.difference.wrapping_sub(by), went: by });
+    pub fn suspend_motor<T: Real>(&mut self, table: &CountTable<T>, last: CountChange) {
+        if self.suspicion.is_none() {
+            let by =
+                if let CountChange::Jumped(by) = last { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
+            self.suspicion = Some(Suspicion { difference: self.difference.wrapping_sub(by), travel: by });
         }
     }
 
     /// Resolves the ambiguity of whole raw ranges of an excluded motor encoder: chooses the position nearest to the
     /// position implied by the output or, without an output encoder, to the motor's last position.
-    pub fn find_motor<T: Real>(&mut self, table: &CountTable<T>) {
-        let Some(Doubt { difference, went }) = self.doubt else { return };
-        let beyond = if self.implied.is_some() { went } else { self.difference.wrapping_sub(difference) };
-        let back = whole_ranges(beyond, &table.motor, table.motor_weight).wrapping_neg();
-        self.motor.turn(&table.motor, back);
-        let back = back.wrapping_mul(table.motor_weight);
-        self.difference = self.difference.wrapping_add(back);
-        self.doubt = Some(Doubt { difference, went: went.wrapping_add(back) });
+    pub fn resolve_motor_position<T: Real>(&mut self, table: &CountTable<T>) {
+        let Some(Suspicion { difference, travel }) = self.suspicion else { return };
+        let offset = if self.implied.is_some() { travel } else { self.difference.wrapping_sub(difference) };
+        let correction = nearest_range_multiple(offset, &table.motor, table.motor_weight).wrapping_neg();
+        self.motor.turn(&table.motor, correction);
+        let correction = correction.wrapping_mul(table.motor_weight);
+        self.difference = self.difference.wrapping_add(correction);
+        self.suspicion = Some(Suspicion { difference, travel: travel.wrapping_add(correction) });
     }
 
     /// Readmits the motor encoder at its found position. An encoder that slipped by `slipped` units of the difference
     /// continues from the motor's position.
-    pub fn trust_motor<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
-        let Some(Doubt { went, .. }) = self.doubt.take() else { return };
+    pub fn readmit_motor<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
+        let Some(Suspicion { travel, .. }) = self.suspicion.take() else { return };
         let counts = quotient(slipped, table.motor_weight).unwrap_or(0);
         if counts != 0 {
             let by = counts.wrapping_mul(table.motor_weight);
             self.motor.turn(&table.motor, counts.wrapping_neg());
-            self.count_from(table, by);
+            self.shift_origin(table, by);
         }
         if self.implied.is_some() {
-            self.follow(table, went);
+            self.advance_implied(table, travel);
         }
     }
 
     /// Shifts the origin of the difference by the units of an encoder slip.
-    fn count_from<T: Real>(&mut self, table: &CountTable<T>, by: i64) {
-        self.start = rest(self.start.wrapping_add(by), table.modulus);
+    fn shift_origin<T: Real>(&mut self, table: &CountTable<T>, by: i64) {
+        self.start = floor_mod(self.start.wrapping_add(by), table.modulus);
         self.difference = self.difference.wrapping_sub(by);
     }
 
@@ -304,52 +324,53 @@ impl Counts {
     /// Among the positions that whole raw ranges leave open, the measured output takes the position nearest to the
     /// implied output. Returns the travel of the measured output [counts].
     #[cold]
-    fn jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
+    fn follow_output_jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
         self.output.advance(&table.output, by.wrapping_neg());
         let (_, implied) = *self.implied.get_or_insert((self.output, self.difference));
-        let beyond =
+        let offset =
             i64::from(by).wrapping_mul(table.output_weight).wrapping_sub(self.difference).wrapping_add(implied);
-        let went = i64::from(by).wrapping_sub(whole_ranges(beyond, &table.output, table.output_weight)) as i32;
-        self.output.advance(&table.output, went);
-        went
+        let travel =
+            i64::from(by).wrapping_sub(nearest_range_multiple(offset, &table.output, table.output_weight)) as i32;
+        self.output.advance(&table.output, travel);
+        travel
     }
 
     /// Sets the start when both encoders have given a first reading.
     #[cold]
-    fn begin<T: Real>(&mut self, table: &CountTable<T>) {
+    fn set_start<T: Real>(&mut self, table: &CountTable<T>) {
         let absolute = i64::from(self.motor.place)
             .wrapping_mul(table.motor_weight)
             .wrapping_sub(i64::from(self.output.place).wrapping_mul(table.output_weight));
-        let reference = core::mem::replace(&mut self.start, rest(absolute, table.modulus));
+        let reference = core::mem::replace(&mut self.start, floor_mod(absolute, table.modulus));
         self.difference = 0;
-        if self.referred {
-            self.refer_to(reference, table);
+        if self.has_reference {
+            self.set_reference(reference, table);
         }
     }
 
     /// Advances the implied output with the motor and returns its travel [counts].
-    fn follow<T: Real>(&mut self, table: &CountTable<T>, by: i64) -> i32 {
-        let Some((implied, rest)) = &mut self.implied else { return 0 };
-        let sum = rest.wrapping_add(by);
+    fn advance_implied<T: Real>(&mut self, table: &CountTable<T>, by: i64) -> i32 {
+        let Some((implied, remainder)) = &mut self.implied else { return 0 };
+        let sum = remainder.wrapping_add(by);
         let counts = quotient(sum, table.output_weight).unwrap_or(0);
-        *rest = sum.wrapping_sub(counts.wrapping_mul(table.output_weight));
+        *remainder = sum.wrapping_sub(counts.wrapping_mul(table.output_weight));
         implied.advance(&table.output, counts as i32);
         counts as i32
     }
 
     /// Refers the difference to saved zeros of the encoders, as far as whole turns leave the zeros open.
-    pub fn refer_to<T: Real>(&mut self, reference: i64, table: &CountTable<T>) {
-        self.referred = true;
+    pub fn set_reference<T: Real>(&mut self, reference: i64, table: &CountTable<T>) {
+        self.has_reference = true;
         if self.output.began {
-            let beyond = rest(self.start.wrapping_sub(reference), table.modulus);
-            let beyond = if beyond > half(table.modulus) { beyond - table.modulus } else { beyond };
-            self.difference = self.difference.wrapping_add(beyond);
+            let offset = floor_mod(self.start.wrapping_sub(reference), table.modulus);
+            let offset = if offset > half(table.modulus) { offset - table.modulus } else { offset };
+            self.difference = self.difference.wrapping_add(offset);
         }
         self.start = reference;
     }
 
     /// Replaces the output by the output implied by the motor, starting at the measured position.
-    pub fn imply(&mut self) {
+    pub fn imply_output(&mut self) {
         if self.implied.is_none() {
             self.implied = Some((self.output, self.difference));
         }
@@ -357,20 +378,20 @@ impl Counts {
 
     /// Returns to the measured output. An encoder that slipped by `slipped` units of the difference continues from the
     /// link's position.
-    pub fn trust<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
+    pub fn readmit_output<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
         self.implied = None;
         let counts = quotient(slipped, table.output_weight).unwrap_or(0);
         if counts != 0 {
             let by = counts.wrapping_mul(table.output_weight);
             self.output.turn(&table.output, counts);
-            self.count_from(table, by);
+            self.shift_origin(table, by);
         }
     }
 
     /// Returns the output in use and its difference.
-    pub fn used(&self) -> (&Counter, i64) {
+    pub fn output_in_use(&self) -> (&Counter, i64) {
         match &self.implied {
-            Some((implied, rest)) => (implied, *rest),
+            Some((implied, remainder)) => (implied, *remainder),
             None => (&self.output, self.difference),
         }
     }
@@ -378,11 +399,11 @@ impl Counts {
 
 #[cfg(test)]
 mod tests {
-    use super::{half, quotient};
+    use super::*;
     use crate::numbers::random::splitmix64;
 
     #[test]
-    fn quotients_are_the_language_s() {
+    fn quotient_equals_checked_div() {
         let mut state = 3;
         let mut any = || (splitmix64(&mut state) as i64) >> (splitmix64(&mut state) % 64);
         let ends = [0, 1, -1, i64::from(u32::MAX), 1 << 32, i64::MAX, i64::MIN + 1];
@@ -391,5 +412,92 @@ mod tests {
             assert_eq!(quotient(units, part), units.checked_div(part), "{units} by {part}");
             assert_eq!(half(units), units / 2, "half of {units}");
         }
+    }
+
+    /// Encoder of 1000 counts per turn that moves by at most 100 counts per period.
+    fn encoder() -> EncoderTable<f32> {
+        EncoderTable {
+            turn: 1000,
+            wraps_at: 1000,
+            last: 999,
+            phase: u64::MAX / 1000,
+            fastest: 100,
+            angle: 6.283e-3,
+            fraction: 1e-3,
+            turns: 0.159,
+        }
+    }
+
+    fn began(raw: u32) -> (Counter, EncoderTable<f32>) {
+        let (mut counter, table) = (Counter::default(), encoder());
+        assert_eq!(counter.read(&table, raw), CountChange::First);
+        (counter, table)
+    }
+
+    #[test]
+    fn shortest_difference_wraps_either_way() {
+        let table = encoder();
+        assert_eq!(shortest_difference(10, 990, &table), 20);
+        assert_eq!(shortest_difference(990, 10, &table), -20);
+        assert_eq!(shortest_difference(499, 0, &table), 499);
+        let wide = EncoderTable { wraps_at: 0, last: u32::MAX, ..table };
+        assert_eq!(shortest_difference(5, u32::MAX, &wide), 6);
+    }
+
+    #[test]
+    fn travel_at_limit_is_accepted() {
+        let (mut counter, table) = began(0);
+        assert_eq!(counter.read(&table, table.fastest), CountChange::By(100));
+        assert_eq!(counter.read(&table, 0), CountChange::By(-100));
+        assert_eq!(counter.read(&table, table.fastest + 1), CountChange::Implausible);
+        assert_eq!(counter.place(), 0);
+    }
+
+    #[test]
+    fn distant_reading_repeated_is_jump() {
+        let (mut counter, table) = began(0);
+        for _ in 0..COUNTS.rejections_before_jump {
+            assert_eq!(counter.read(&table, 450), CountChange::Implausible);
+        }
+        assert_eq!(counter.read(&table, 450), CountChange::Jumped(450));
+        assert_eq!(counter.place(), 450);
+    }
+
+    #[test]
+    fn reading_after_rejection_may_be_farther() {
+        let (mut counter, table) = began(0);
+        assert_eq!(counter.read(&table, 300), CountChange::Implausible);
+        assert_eq!(counter.read(&table, 2 * table.fastest), CountChange::By(200));
+    }
+
+    #[test]
+    fn position_counts_turns_either_way() {
+        let (mut counter, table) = began(950);
+        counter.read(&table, 20);
+        assert_eq!((counter.turns(), counter.place()), (1, 20));
+        counter.read(&table, 980);
+        assert_eq!((counter.turns(), counter.place()), (0, 980));
+    }
+
+    #[test]
+    fn raw_count_out_of_range_is_reduced() {
+        let (mut counter, table) = began(10);
+        assert_eq!(counter.read(&table, 1015), CountChange::By(5));
+        assert_eq!(counter.read(&EncoderTable { wraps_at: 0, ..table }, 1020), CountChange::Implausible);
+    }
+
+    #[test]
+    fn floor_division_has_no_negative_remainder() {
+        assert_eq!((floor_div(-7, 3), floor_mod(-7, 3)), (-3, 2));
+        assert_eq!((floor_div(7, 3), floor_mod(7, 3)), (2, 1));
+        assert_eq!((floor_div(7, 0), floor_mod(7, 0)), (0, 7));
+    }
+
+    #[test]
+    fn range_multiple_is_nearest() {
+        let table = encoder();
+        assert_eq!(nearest_range_multiple(2 * 1499, &table, 2), 1000);
+        assert_eq!(nearest_range_multiple(2 * 1500, &table, 2), 2000);
+        assert_eq!(nearest_range_multiple(-2 * 600, &table, 2), -1000);
     }
 }

@@ -4,8 +4,10 @@
 pub mod counts;
 pub mod latency;
 
-use counts::{Advance, Counts};
-use latency::{Freshness, Latency};
+mod thresholds;
+
+use counts::{CountChange, Counts};
+use latency::{Latency, SampleAge};
 
 use crate::numbers::Real;
 use crate::observer::estimates::Notices;
@@ -20,28 +22,28 @@ pub struct Sensors {
     /// Time of the last samples [ticks].
     time: u32,
     /// Periods for which a rejected torque sample may still affect the filters.
-    unsure_for: u16,
+    torque_unknown_for: u16,
 }
 
 /// Evaluated samples of one period.
 #[derive(Debug, Clone, Copy)]
-pub struct Sensed<T: Real> {
+pub struct SensorReadings<T: Real> {
     /// Commanded torque; zero if the sample was rejected [N m].
     pub command: T,
     /// Result of the motor reading.
-    pub motor: Advance,
+    pub motor: CountChange,
     /// Travel of the motor counts [rad].
-    pub motor_turned: T,
+    pub motor_travel: T,
     /// Time from the previous motor reading to this reading; 0 for a repeated reading [ticks].
     pub motor_interval: u32,
     /// Age of the motor reading [ticks].
     pub motor_age: u32,
     /// Freshness of the motor reading.
-    pub freshness: Freshness,
+    pub motor_sample_age: SampleAge,
     /// Result of the output reading; `None` without a fresh reading.
-    pub output: Option<Advance>,
+    pub output: Option<CountChange>,
     /// Travel of the output counts in use, measured or implied [rad].
-    pub output_turned: T,
+    pub output_travel: T,
     /// Age of the output reading [ticks].
     pub output_age: u32,
     /// Time from the previous fresh output reading to this fresh reading [ticks].
@@ -57,62 +59,64 @@ impl Sensors {
     pub fn new(has_output: bool) -> Self {
         let mut counts = Counts::default();
         if !has_output {
-            counts.imply();
+            counts.imply_output();
         }
-        Self { counts, latency: Latency::default(), time: 0, unsure_for: 0 }
+        Self { counts, latency: Latency::default(), time: 0, torque_unknown_for: 0 }
     }
 
     /// Returns whether a rejected torque sample may still affect the filters.
-    pub fn is_unsure(&self) -> bool {
-        self.unsure_for > 0
+    pub fn is_torque_uncertain(&self) -> bool {
+        self.torque_unknown_for > 0
     }
 
     /// Evaluates the samples of one period.
     #[inline(always)]
-    pub fn step<T: Real>(&mut self, tables: &ObserverTables<T>, samples: &Samples<T>) -> Sensed<T> {
+    pub fn step<T: Real>(&mut self, tables: &ObserverTables<T>, samples: &Samples<T>) -> SensorReadings<T> {
         // False for NaN, too.
-        let known = samples.torque.abs() <= tables.current.believed;
-        self.unsure_for = if known { self.unsure_for.saturating_sub(1) } else { tables.current.unsure_for };
-        let command = if known { samples.torque } else { T::ZERO };
+        let torque_known = samples.torque.abs() <= tables.current.believed;
+        self.torque_unknown_for =
+            if torque_known { self.torque_unknown_for.saturating_sub(1) } else { tables.current.unsure_for };
+        let command = if torque_known { samples.torque } else { T::ZERO };
         let clock = &tables.clock;
         let motor_age = age(samples.time, &samples.motor);
-        let freshness = self.latency.step((motor_age <= clock.oldest).then_some(motor_age), clock.period);
+        let motor_sample_age = self.latency.step((motor_age <= clock.oldest).then_some(motor_age), clock.period);
         let output_age = samples.output.map_or(0, |reading| age(samples.time, &reading));
         let output = samples.output.filter(|_| output_age <= clock.oldest);
-        let taken = self.counts.take(&tables.counts, samples.motor, output);
+        let counted = self.counts.read_counts(&tables.counts, samples.motor, output);
         let before = core::mem::replace(&mut self.time, samples.time);
-        let lasted = if taken.motor == Advance::Began { clock.shortest } else { samples.time.wrapping_sub(before) };
-        let out_of_time = lasted.wrapping_sub(clock.shortest) > clock.longer;
-        let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
-        Sensed {
+        let elapsed =
+            if counted.motor == CountChange::First { clock.shortest } else { samples.time.wrapping_sub(before) };
+        let out_of_time = elapsed.wrapping_sub(clock.shortest) > clock.longer;
+        let motor_counts = if let CountChange::By(by) = counted.motor { by } else { 0 };
+        SensorReadings {
             command,
-            motor: taken.motor,
-            motor_turned: tables.counts.motor.angle * T::from_i32(motor_by),
-            motor_interval: taken.motor_apart,
+            motor: counted.motor,
+            motor_travel: tables.counts.motor.angle * T::from_i32(motor_counts),
+            motor_interval: counted.motor_interval,
             motor_age,
-            freshness,
-            output: taken.output,
-            output_turned: tables.counts.output.angle * T::from_i32(taken.turned),
+            motor_sample_age,
+            output: counted.output,
+            output_travel: tables.counts.output.angle * T::from_i32(counted.output_travel),
             output_age,
-            output_interval: taken.apart,
-            torque_known: known,
+            output_interval: counted.output_interval,
+            torque_known,
             out_of_time,
         }
     }
 }
 
-impl<T: Real> Sensed<T> {
+impl<T: Real> SensorReadings<T> {
     /// Returns the defects of the samples.
     #[inline(always)]
     pub fn notices(&self) -> Notices {
-        if self.torque_known && !self.out_of_time && matches!(self.motor, Advance::By(_)) {
+        if self.torque_known && !self.out_of_time && matches!(self.motor, CountChange::By(_)) {
             return Notices::default();
         }
         Notices {
             torque_unknown: !self.torque_known,
             out_of_time: self.out_of_time,
-            motor_implausible: self.motor == Advance::Implausible,
-            motor_jumped: matches!(self.motor, Advance::Jumped(_)),
+            motor_implausible: self.motor == CountChange::Implausible,
+            motor_jumped: matches!(self.motor, CountChange::Jumped(_)),
         }
     }
 }

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let now = motion(time_s);
             let command = Command::Position { now, ahead: Some(motion(time_s + lead_s)) };
             joint.advance(compensation.step(&estimates, &command).torque, 0.0);
-            let error = now.position.less(estimates.link.turns, estimates.link.fraction).abs();
+            let error = now.position.difference(estimates.link.turns, estimates.link.fraction).abs();
             error_turns = if time_s < LEARNING_S { 0.0 } else { error_turns.max(error) };
             if let Some(flank) = Flank::touched(joint.outputs().contacts[0][0]).filter(|_| time_s >= LEARNING_S) {
                 let (before, left_s) = touched.replace((flank, time_s)).unwrap_or((flank, time_s));

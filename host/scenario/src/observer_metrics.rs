@@ -2,7 +2,7 @@
 
 use model_core::gears::Kinematics;
 use model_core::observer::Progress;
-use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::virtual_joint::fault::{EncoderShaft, FaultKind};
 
 use super::case::Case;
 use super::file::{Fault, TestFile, fault_is_on};
@@ -231,10 +231,10 @@ fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let of_output = |fault: &&Fault| {
         matches!(
             fault.kind,
-            FaultKind::Frozen(Shaft::Link)
-                | FaultKind::Offset(Shaft::Link, _)
-                | FaultKind::MissingCounts(Shaft::Link, _)
-                | FaultKind::LostReadings(Shaft::Link, _)
+            FaultKind::Frozen(EncoderShaft::Link)
+                | FaultKind::Offset(EncoderShaft::Link, _)
+                | FaultKind::MissingCounts(EncoderShaft::Link, _)
+                | FaultKind::LostReadings(EncoderShaft::Link, _)
         )
     };
     let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);

@@ -21,19 +21,19 @@
 //! sine, and lag although the torque suffices.
 
 use super::load::LoadModel;
-use super::situation::Situation;
+use super::loop_state::LoopState;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 
 /// Smallest braking torque assumed for a link that a load drives: a weight that the motor cannot hold is approached
 /// with this torque [N m].
-fn least<T: Real>(tables: &CompensationTables<T>) -> T {
+fn min_braking_torque<T: Real>(tables: &CompensationTables<T>) -> T {
     T::EIGHTH * tables.limits.motor
 }
 
 /// Motion of the set-point that the link closes on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Course<T: Real> {
+pub(super) struct SetPointMotion<T: Real> {
     /// Speed [rad/s].
     pub speed: T,
     /// Acceleration [rad/s^2].
@@ -44,7 +44,7 @@ pub(super) struct Course<T: Real> {
 
 /// Difference of set-point and link.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lag<T: Real> {
+pub(super) struct TrackingError<T: Real> {
     /// Set-point less link [rad].
     pub error: T,
     /// Rate of the error [rad/s].
@@ -64,7 +64,7 @@ pub(super) struct Approach<T: Real> {
 
 /// Braking torque and inertia of the link.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Braking<T: Real> {
+pub(super) struct BrakingLimit<T: Real> {
     /// Inertia of link and motor [kg m^2].
     inertia: T,
     /// Torque that brakes a link moving backwards, forwards [N m].
@@ -73,18 +73,21 @@ pub(super) struct Braking<T: Real> {
     rate: T,
 }
 
-impl<T: Real> Braking<T> {
+impl<T: Real> BrakingLimit<T> {
     /// Error over e0 up to which the linear law always applies [-]. Tuned on sines, moves and random motions that ask
     /// for 0.5 to 3 times the torque: 1/8 changes the figures by less than a tenth, 1 makes the peaks of short moves up
     /// to 1.5 times larger.
-    const LINEAR: T = T::QUARTER;
+    const LINEAR_ERROR_SHARE: T = T::QUARTER;
 
     /// Computes braking torques and inertia from the estimates.
-    pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, situation: &Situation<T>) -> Self {
-        let [bias, motor_friction] = situation.losses;
-        let [driven, still] = [load.even() + bias, tables.limits.motor + load.friction() + motor_friction];
-        let of = |torque: T| tables.limits.braking * if torque > least(tables) { torque } else { least(tables) };
-        Self { inertia: situation.inertia, torques: [of(still - driven), of(still + driven)], rate: tables.law.rate }
+    pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, state: &LoopState<T>) -> Self {
+        let [bias, motor_friction] = state.losses;
+        let [driven, still] = [load.gravity_torque() + bias, tables.limits.motor + load.friction() + motor_friction];
+        let of = |torque: T| {
+            tables.limits.braking
+                * if torque > min_braking_torque(tables) { torque } else { min_braking_torque(tables) }
+        };
+        Self { inertia: state.inertia, torques: [of(still - driven), of(still + driven)], rate: tables.law.rate }
     }
 
     /// Acceleration of a link under the motor's torque or, in the open gap, under its load alone [rad/s^2].
@@ -92,22 +95,22 @@ impl<T: Real> Braking<T> {
         &self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
-        situation: &Situation<T>,
+        state: &LoopState<T>,
         torque: T,
     ) -> T {
-        if situation.open {
-            -load.free() * tables.body.inverse_load_inertia
+        if state.teeth_open {
+            -load.free_load_torque() * tables.body.inverse_load_inertia
         } else {
-            (torque - load.free()).over(self.inertia)
+            (torque - load.free_load_torque()).over(self.inertia)
         }
     }
 
     /// Returns the approach that replaces the linear law; `None` while the linear law applies. `error` is the set-point
     /// less the link [rad].
-    pub fn approach(&self, error: T, course: &Course<T>) -> Option<Approach<T>> {
-        let goes_on = if course.speed == T::ZERO { error > T::ZERO } else { course.speed > T::ZERO };
+    pub fn approach(&self, error: T, course: &SetPointMotion<T>) -> Option<Approach<T>> {
+        let moves_forward = if course.speed == T::ZERO { error > T::ZERO } else { course.speed > T::ZERO };
         let [back, on] = self.torques;
-        let (side, against, against_return) = if goes_on { (T::ONE, on, back) } else { (-T::ONE, back, on) };
+        let (side, against, against_return) = if moves_forward { (T::ONE, on, back) } else { (-T::ONE, back, on) };
         let [error, speed, acceleration, ahead] =
             [error, course.speed, course.acceleration, course.ahead].map(|way| side * way);
         let hardest = if ahead < acceleration { ahead } else { acceleration };
@@ -120,7 +123,7 @@ impl<T: Real> Braking<T> {
         } else {
             (needed, against, against - self.inertia * braked)
         };
-        if needed <= Self::LINEAR * against_error || needed <= left && !unmatched {
+        if needed <= Self::LINEAR_ERROR_SHARE * against_error || needed <= left && !unmatched {
             return None;
         }
         let most = against.over(self.inertia);
@@ -131,7 +134,8 @@ impl<T: Real> Braking<T> {
         } else {
             self.towards(most - braked, error, acceleration)
         };
-        let approach = if braked > T::ZERO { self.or_to_rest(beside, most, error, speed, braked) } else { beside };
+        let approach =
+            if braked > T::ZERO { self.nearer_of_place_and_rest(beside, most, error, speed, braked) } else { beside };
         Some(Approach { closing: side * approach.closing, acceleration: side * approach.acceleration })
     }
 
@@ -141,14 +145,14 @@ impl<T: Real> Braking<T> {
         &self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
-        lag: &Lag<T>,
-        course: &Course<T>,
+        lag: &TrackingError<T>,
+        course: &SetPointMotion<T>,
         time: T,
     ) -> T {
         let rate = lag.rate + time * lag.acceleration;
         let error = lag.error + time * (lag.rate + T::HALF * time * lag.acceleration);
         let growth = time.over(tables.crossing.lead) * (course.ahead - course.acceleration);
-        let course = Course {
+        let course = SetPointMotion {
             speed: course.speed + time * (course.acceleration + T::HALF * growth),
             acceleration: course.acceleration + growth,
             ..*course
@@ -157,23 +161,23 @@ impl<T: Real> Braking<T> {
         let approach = self.approach(error, &course).unwrap_or(linear);
         tables.body.load_inertia * approach.acceleration
             + tables.law.damping * (approach.closing + rate)
-            + load.even()
-            + load.drag()
-            + time * load.rate()
+            + load.gravity_torque()
+            + load.friction_torque()
+            + time * load.gravity_rate()
     }
 
     /// Approach to a set-point that moves and brakes: towards the place where the set-point will stop, if it stops
     /// first or brakes harder than the link can; otherwise `beside`.
-    fn or_to_rest(&self, beside: Approach<T>, most: T, error: T, speed: T, braked: T) -> Approach<T> {
-        let stands_in = speed.over(braked);
-        let to_rest = self.towards(most, error + T::HALF * speed * stands_in, T::ZERO);
+    fn nearer_of_place_and_rest(&self, beside: Approach<T>, most: T, error: T, speed: T, braked: T) -> Approach<T> {
+        let time_to_rest = speed.over(braked);
+        let to_rest = self.towards(most, error + T::HALF * speed * time_to_rest, T::ZERO);
         let to_rest = Approach { closing: to_rest.closing - speed, ..to_rest };
-        let stands_first = if most > braked {
-            error > T::HALF * (most - braked) * stands_in * stands_in
+        let rests_first = if most > braked {
+            error > T::HALF * (most - braked) * time_to_rest * time_to_rest
         } else {
             to_rest.closing < beside.closing
         };
-        if stands_first { to_rest } else { beside }
+        if rests_first { to_rest } else { beside }
     }
 
     /// Approach to an accelerated place at the distance `way`. Near the knee the linear law takes over, which feeds

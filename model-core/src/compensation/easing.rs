@@ -3,7 +3,7 @@
 //! the link gives way.
 
 use super::load::LoadModel;
-use super::situation::Situation;
+use super::loop_state::LoopState;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
@@ -14,9 +14,9 @@ pub(super) struct Easing<T: Real> {
     /// Load at the beginning of the steady time [N m].
     load: T,
     /// Time for which the load has been steady, saturating [s].
-    steady: T,
+    steady_time: T,
     /// Set-point less link at the beginning of the easing; `None` while the load is held [rad].
-    place: Option<T>,
+    start_error: Option<T>,
     /// True if the link gave way: the load is more than friction, and is held until the joint has moved.
     gave_way: bool,
 }
@@ -24,10 +24,10 @@ pub(super) struct Easing<T: Real> {
 impl<T: Real> Easing<T> {
     /// Largest error of a steady load, and travel by which the link gives way, over the first dead band [-]: two counts
     /// of a good encoder.
-    const SLIGHT: T = T::HALF;
+    const MAX_TRAVEL: T = T::HALF;
 
     pub fn new() -> Self {
-        Self { load: T::ZERO, steady: T::ZERO, place: None, gave_way: false }
+        Self { load: T::ZERO, steady_time: T::ZERO, start_error: None, gave_way: false }
     }
 
     /// Updates the easing by a period. Returns the share of the load to be held [-]: a half while eased, so that the
@@ -36,31 +36,32 @@ impl<T: Real> Easing<T> {
         &mut self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
-        situation: &Situation<T>,
+        state: &LoopState<T>,
         rests: bool,
-        stands: bool,
+        friction_holds: bool,
     ) -> T {
         if !rests {
             *self = Self::new();
             return T::ONE;
         }
-        let slight = Self::SLIGHT * tables.rest.first_deadband * situation.half;
-        let gives_way = |place: T| !stands || (situation.error - place).abs() > slight;
-        self.gave_way = (self.gave_way || self.place.is_some_and(gives_way)) && !load.throws(tables);
+        let max_travel = Self::MAX_TRAVEL * tables.rest.first_deadband * state.half_gap;
+        let gives_way = |start_error: T| !friction_holds || (state.error - start_error).abs() > max_travel;
+        self.gave_way = (self.gave_way || self.start_error.is_some_and(gives_way)) && !load.external_impact(tables);
         let measured = tables.switching.measured;
         let least = measured * tables.switching.least;
-        let is_felt = beyond(load.even(), least) != T::ZERO;
-        let may_be_friction = beyond(load.even(), measured + measured + load.friction()) == T::ZERO;
-        let is_steady = beyond(situation.error, slight) == T::ZERO && beyond(load.even() - self.load, least) == T::ZERO;
-        let goes_on = stands && !self.gave_way && is_felt && may_be_friction;
-        if !goes_on || self.place.is_none() && !is_steady {
-            *self = Self { load: load.even(), steady: T::ZERO, place: None, ..*self };
+        let is_felt = beyond(load.gravity_torque(), least) != T::ZERO;
+        let may_be_friction = beyond(load.gravity_torque(), measured + measured + load.friction()) == T::ZERO;
+        let is_steady =
+            beyond(state.error, max_travel) == T::ZERO && beyond(load.gravity_torque() - self.load, least) == T::ZERO;
+        let may_ease = friction_holds && !self.gave_way && is_felt && may_be_friction;
+        if !may_ease || self.start_error.is_none() && !is_steady {
+            *self = Self { load: load.gravity_torque(), steady_time: T::ZERO, start_error: None, ..*self };
             return T::ONE;
         }
-        self.steady = clamp(self.steady + tables.clock.period, T::ZERO, tables.rest.hunting);
-        if self.steady >= tables.rest.hunting {
-            self.place = self.place.or(Some(situation.error));
+        self.steady_time = clamp(self.steady_time + tables.clock.period, T::ZERO, tables.rest.hunting);
+        if self.steady_time >= tables.rest.hunting {
+            self.start_error = self.start_error.or(Some(state.error));
         }
-        if self.place.is_some() { T::HALF } else { T::ONE }
+        if self.start_error.is_some() { T::HALF } else { T::ONE }
     }
 }

@@ -1,6 +1,6 @@
 //! Integral of a PID on the motor position, with back-calculation: u_i in (K18).
 
-use super::swing::Swing;
+use super::torque_swing::TorqueSwing;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -10,12 +10,12 @@ use crate::numbers::arithmetic::clamp;
 pub(super) struct Integral<T: Real> {
     /// Torque of the integral [N m].
     torque: T,
-    swing: Swing<T>,
+    swing: TorqueSwing<T>,
 }
 
 impl<T: Real> Integral<T> {
     pub fn new() -> Self {
-        Self { torque: T::ZERO, swing: Swing::new() }
+        Self { torque: T::ZERO, swing: TorqueSwing::new() }
     }
 
     /// Torque of the integral [N m].
@@ -24,8 +24,8 @@ impl<T: Real> Integral<T> {
     }
 
     /// Checks the torque of the PID before its limit for a swing, once in `periods` periods [N m].
-    pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
-        self.swing.watch(tables, torque, periods);
+    pub fn detect_swing(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
+        self.swing.update(tables, torque, periods);
     }
 
     /// True if the torque has swung from side to side.
@@ -41,19 +41,19 @@ impl<T: Real> Integral<T> {
         }
     }
 
-    /// Updates the integral by the motor's position error `beyond` [rad] and the torque `cut` that the limit cut off [N
+    /// Updates the integral by the motor's position error `position_error` [rad] and the torque `cut` that the limit cut off [N
     /// m]. While the torque swings from side to side, a cut torque does not show that the integral is too large, so it
     /// is held. Integrating further under the limit would make a loop with a heavier link than designed swing from
     /// limit to limit without end.
-    pub fn integrate(&mut self, tables: &CompensationTables<T>, beyond: T, cut: T) {
+    pub fn integrate(&mut self, tables: &CompensationTables<T>, position_error: T, cut: T) {
         if self.swings() && cut != T::ZERO {
             return;
         }
-        self.add(tables, tables.law.back_calculation * cut - tables.law.integral * beyond);
+        self.add(tables, tables.law.back_calculation * cut - tables.law.integral * position_error);
     }
 
     /// Follows another torque with the time constant of the loop [N m].
-    pub fn approach(&mut self, tables: &CompensationTables<T>, torque: T) {
+    pub fn decay_toward(&mut self, tables: &CompensationTables<T>, torque: T) {
         self.add(tables, tables.law.back_calculation * (torque - self.torque));
     }
 }

@@ -15,7 +15,7 @@ pub struct Position<T: Real> {
 
 impl<T: Real> Position<T> {
     /// Difference to another angle, `self` minus the other [turns].
-    pub fn less(&self, turns: i32, fraction: T) -> T {
+    pub fn difference(&self, turns: i32, fraction: T) -> T {
         T::from_i64(i64::from(self.turns) - i64::from(turns)) + (self.fraction - fraction)
     }
 }
@@ -139,12 +139,12 @@ pub enum Stage {
 /// Output of the compensation in one control period. The numbers come first, so that they are copied in one block.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
-pub struct Shaped<T: Real> {
+pub struct ControlOutput<T: Real> {
     /// Torque command of the motor [N m].
     pub torque: T,
     /// Torque through the teeth at the end of a crossing that begins now; zero under plain control [N m].
     pub demand: T,
-    /// Estimated load torque: even load, dry friction [N m].
+    /// Estimated load torque: gravity torque, dry friction [N m].
     pub load: [T; 2],
     /// Share of the compensation in the torque, 0 to 1; plain control has the rest.
     pub trust: T,

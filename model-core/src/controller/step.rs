@@ -2,7 +2,7 @@
 //! compensated torque. The width probe can replace the compensation.
 
 use crate::compensation::CompensationTables;
-use crate::compensation::{Command, Compensation, Shaped};
+use crate::compensation::{Command, Compensation, ControlOutput};
 use crate::numbers::Real;
 use crate::numbers::digest::chain;
 use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
@@ -14,7 +14,7 @@ pub struct Answer<T: Real> {
     /// Outputs of the observer.
     pub estimates: Estimates<T>,
     /// Outputs of the compensation.
-    pub shaped: Shaped<T>,
+    pub shaped: ControlOutput<T>,
     /// Progress of the width probe, in a period of the probe.
     pub probed: Option<Progress<T>>,
 }
@@ -138,6 +138,6 @@ impl<'tables, T: Real> Controller<'tables, T> {
             return Answer { probed: Some(Progress::Running), ..still };
         }
         let (torque, progress) = probe.step(&estimates);
-        Answer { shaped: Shaped { torque, ..Shaped::default() }, probed: Some(progress), ..still }
+        Answer { shaped: ControlOutput { torque, ..ControlOutput::default() }, probed: Some(progress), ..still }
     }
 }

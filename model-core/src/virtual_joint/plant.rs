@@ -8,7 +8,7 @@ use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::{Reading, Samples};
-use crate::virtual_joint::tables::{COMMANDS_IN_FLIGHT, EncoderErrorTable, FrictionTable, SurroundingsTable};
+use crate::virtual_joint::tables::{COMMAND_QUEUE_LENGTH, EncoderErrorTable, FrictionTable, SurroundingsTable};
 
 /// Torques of the last period [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -45,7 +45,7 @@ pub struct VirtualJoint<'tables, T: Real, const N: usize> {
     model: Model<'tables, T, N>,
     table: &'tables SurroundingsTable<T>,
     /// Delayed commands, the newest first.
-    commands: [T; COMMANDS_IN_FLIGHT],
+    commands: [T; COMMAND_QUEUE_LENGTH],
     current: T,
     periods: u32,
     acting: ActingTorques<T>,
@@ -73,18 +73,18 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
             shafts: Shafts::default(),
             model,
             table,
-            commands: [T::ZERO; COMMANDS_IN_FLIGHT],
+            commands: [T::ZERO; COMMAND_QUEUE_LENGTH],
             current: T::ZERO,
             periods: 0,
             acting: ActingTorques::default(),
         };
-        joint.update();
+        joint.update_outputs();
         joint
     }
 
     /// Updates outputs and shafts after a step.
     #[inline(never)]
-    fn update(&mut self) {
+    fn update_outputs(&mut self) {
         self.outputs = self.model.outputs();
         self.shafts = self.shafts();
     }
@@ -92,11 +92,11 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     /// Returns to rest at angle zero.
     pub fn reset(&mut self) {
         self.model.reset();
-        self.commands = [T::ZERO; COMMANDS_IN_FLIGHT];
+        self.commands = [T::ZERO; COMMAND_QUEUE_LENGTH];
         self.current = T::ZERO;
         self.periods = 0;
         self.acting = ActingTorques::default();
-        self.update();
+        self.update_outputs();
     }
 
     /// Model of the gears.
@@ -138,15 +138,15 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     /// not inlined: each needs much stack, but not at the same time.
     #[inline(never)]
     pub fn advance(&mut self, command: T, disturbance: T) {
-        self.find_torques(command, disturbance);
+        self.compute_torques(command, disturbance);
         self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
         self.periods = self.periods.wrapping_add(1);
-        self.update();
+        self.update_outputs();
     }
 
     /// Computes the torques that act over the period.
     #[inline(never)]
-    fn find_torques(&mut self, command: T, disturbance: T) {
+    fn compute_torques(&mut self, command: T, disturbance: T) {
         let table = self.table;
         self.commands.rotate_right(1);
         let limit = table.current.limit;
@@ -158,33 +158,33 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let mesh_torque = self.mesh_torque();
         let [motor_speed, link_speed] = shafts.speeds;
         let loss = table.losses[usize::from(mesh_torque * motor_speed < T::ZERO)] * mesh_torque.abs();
-        let lost = friction(&table.motor_friction, motor_speed, driving - mesh_torque, loss);
+        let motor_friction = friction(&table.motor_friction, motor_speed, driving - mesh_torque, loss);
 
         let (sine, _) = sine_cosine::<T>(shafts.link as u32);
         let braking = table.weight * sine + disturbance;
         let [from_sun, from_wind_up, from_rate] = table.to_link;
         let to_link =
             from_sun * mesh_torque + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
-        let rubbing = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
-        self.acting = ActingTorques { air_gap, drive: driving - lost, load: braking + rubbing };
+        let load_friction = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
+        self.acting = ActingTorques { air_gap, drive: driving - motor_friction, load: braking + load_friction };
     }
 
     /// Mean torque in the air gap over this period.
     fn air_gap(&mut self) -> T {
         let table = &self.table.current;
-        let wanted = self.commands.get(table.delay as usize).copied().unwrap_or(T::ZERO);
-        let missing = wanted - self.current;
-        self.current += missing * table.rise;
-        (wanted - missing * table.lacking) * table.gain
+        let delayed_command = self.commands.get(table.delay as usize).copied().unwrap_or(T::ZERO);
+        let command_step = delayed_command - self.current;
+        self.current += command_step * table.rise;
+        (delayed_command - command_step * table.lacking) * table.gain
     }
 
     /// Torque from the sun to the planets, by mesh stiffness alone.
     fn mesh_torque(&self) -> T {
         let table = self.table;
         let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
-        let overlap =
+        let penetration =
             meshes.fold(T::ZERO, |sum, (deflection, half)| sum + *deflection - clamp(*deflection, -*half, *half));
-        table.sun_torque * overlap
+        table.sun_torque * penetration
     }
 
     fn shafts(&self) -> Shafts<T> {

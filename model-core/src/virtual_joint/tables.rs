@@ -5,7 +5,7 @@ use crate::numbers::Real;
 use crate::observer::tables::MOST_DELAY;
 
 /// Capacity for delayed motor commands.
-pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
+pub const COMMAND_QUEUE_LENGTH: usize = MOST_DELAY + 1;
 
 /// Surroundings of one joint at one tick rate; a tick is a control period.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +55,7 @@ pub struct SurroundingsTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CurrentLoopTable<T: Real> {
-    /// Whole periods of delay, less than [`COMMANDS_IN_FLIGHT`].
+    /// Whole periods of delay, less than [`COMMAND_QUEUE_LENGTH`].
     pub delay: u32,
     /// Share of the missing torque that is added in a period.
     pub rise: T,

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::virtual_joint::fault::{EncoderShaft, FaultKind};
 
 use crate::file::{Fault, Offset, fault_is_on, fault_stream};
 use crate::random::RandomStream;
@@ -33,7 +33,7 @@ impl Active {
     }
 
     /// What an encoder says in place of its counts.
-    pub fn count(&mut self, time: f64, encoder: Shaft, counts: i64, counts_per_turn: f64) -> i64 {
+    pub fn count(&mut self, time: f64, encoder: EncoderShaft, counts: i64, counts_per_turn: f64) -> i64 {
         let on = fault_is_on(&self.fault, time);
         match self.fault.kind {
             FaultKind::Frozen(of) if of == encoder => match (on, self.held) {

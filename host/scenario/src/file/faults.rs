@@ -1,6 +1,6 @@
 //! Reads `[[fault]]`: what goes wrong, from when to when, in SI.
 
-use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
+use model_core::virtual_joint::fault::{self, EncoderShaft, FaultKind, FaultUnits};
 
 use super::motion::refuse_others;
 use super::section::Section;
@@ -14,7 +14,7 @@ pub type Fault = fault::Fault<Si>;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Si;
 
-impl Units for Si {
+impl FaultUnits for Si {
     type Time = f64;
     type Seed = ();
     type Offset = Offset;
@@ -38,7 +38,7 @@ pub struct Offset {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HostOnlyFault {
     /// Readings of an encoder come late [s].
-    LateReadings(Shaft, f64),
+    LateReadings(EncoderShaft, f64),
     /// A part of the set-points never comes.
     LostSetPoints(f64),
     /// Set-points come late [s].
@@ -52,7 +52,7 @@ pub enum HostOnlyFault {
 /// Where frames come from.
 #[derive(Clone, Copy)]
 enum Frames {
-    Readings(Shaft),
+    Readings(EncoderShaft),
     SetPoints,
 }
 
@@ -105,13 +105,13 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
     let taken: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
     refuse_others(section, &taken, word);
     let encoder = match section.word("encoder") {
-        Some("motor") => Shaft::Motor,
-        _ => Shaft::Link,
+        Some("motor") => EncoderShaft::Motor,
+        _ => EncoderShaft::Link,
     };
     let frames = match section.word("frames") {
-        Some("motor") => Frames::Readings(Shaft::Motor),
+        Some("motor") => Frames::Readings(EncoderShaft::Motor),
         Some("set_points") => Frames::SetPoints,
-        _ => Frames::Readings(Shaft::Link),
+        _ => Frames::Readings(EncoderShaft::Link),
     };
     let needed = |name: &str| section.required(name, Section::number);
     let one_of = |names: [&str; 2]| {

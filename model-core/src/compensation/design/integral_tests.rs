@@ -1,14 +1,14 @@
 //! Tests of the integral under the motor's limit.
 
-use super::watch_tests::tables;
+use super::monitor_tests::tables;
 use crate::compensation::integral::Integral;
 use crate::compensation::tables::CompensationTables;
 
 /// Returns an integral whose torque has swung from limit to limit.
 fn swinging(tables: &CompensationTables<f32>) -> Integral<f32> {
     let mut integral = Integral::new();
-    integral.watch(tables, tables.limits.motor, 1.0);
-    integral.watch(tables, -tables.limits.motor, 1.0);
+    integral.detect_swing(tables, tables.limits.motor, 1.0);
+    integral.detect_swing(tables, -tables.limits.motor, 1.0);
     assert!(integral.swings());
     integral
 }

@@ -6,14 +6,14 @@
 
 use core::f64::consts::TAU;
 
-use super::body::Body;
-use super::damping::{of_both, on_motor_alone, reaction};
+use super::body::JointBody;
+use super::damping::{loop_damping, motor_damping_bound, reaction};
 use super::settings::{CompensationSettings, check};
 use super::stability;
-use crate::compensation::crossing::Crossing;
+use crate::compensation::crossing_timing::CrossingTiming;
 use crate::compensation::tables::{
-    BodyTable, ClockTable, CompensationTables, CrossingTable, GearTable, LandingTable, LawTable, LimitTable, LoadTable,
-    RestTable, SwitchingTable, WatchTable,
+    BodyTable, CompensationTables, ControlClockTable, CrossingTable, GearTable, LandingTable, LawTable, LimitTable,
+    LoadModelTable, MonitorTable, RestTable, SwitchingTable,
 };
 use crate::gears::design::{DesignError, validate};
 use crate::gears::gear_losses;
@@ -24,7 +24,7 @@ use parameters::JointParameters;
 /// the estimated first blow, which leaves three fifths.
 const STRIKE: f64 = 0.4;
 
-/// Largest force on planets struck in the gap, over the peak torque, at any demand: a planet caught between sun and
+/// Largest force on planets struck in the gap, over the peak torque, at any demand: a planet caught bisect sun and
 /// flank is struck harder each time.
 const HARDEST_STRIKE: f64 = 0.56;
 
@@ -42,7 +42,7 @@ const LEAST_ROOM: f64 = 0.1;
 /// Peak torque over rated torque if neither settings nor motor give less: the least that gear catalogues allow.
 const PEAK: f64 = 2.0;
 
-/// Largest factor between estimated compliance and the joint file's; estimates beyond are clamped.
+/// Largest factor bisect estimated compliance and the joint file's; estimates beyond are clamped.
 const COMPLIANCE: f64 = 4.0;
 
 /// Share of the largest torque for the path of a crossing; feedback along the path has the rest.
@@ -100,7 +100,7 @@ const MOST_GROWTH: f64 = 0.3;
 /// over the same time.
 const TRANSIENT: f64 = 6.0;
 
-/// Time between requests for opposite flanks below which a joint at rest hunts, times the bandwidth.
+/// Time bisect requests for opposite flanks below which a joint at rest hunts, times the bandwidth.
 const HUNTING: f64 = 15.0;
 
 /// Change of a torque beyond which its smoothing is faster, over the largest torque.
@@ -135,7 +135,7 @@ const FRICTION_FOLLOWED: f64 = 1e-2;
 /// Time in which a missed impulse is returned, over the time of a crossing (K16).
 const REPAYMENT: f64 = 1.15;
 
-/// Longest time between impedance set-points of a moving stream [s]: streams send at least 200 per second.
+/// Longest time bisect impedance set-points of a moving stream [s]: streams send at least 200 per second.
 const LONGEST_HOLD: f64 = 5e-3;
 
 /// Time of blending from plain to compensated control, times the bandwidth; the other way takes one period.
@@ -182,7 +182,7 @@ pub fn design_compensation<T: Real>(
     let real = T::from_f64;
     let period = 1.0 / f64::from(settings.control_rate);
     let pole = settings.bandwidth;
-    let body = Body::new(joint);
+    let body = JointBody::new(joint);
     stability::check(&body, settings)?;
     let inertia = body.motor + body.load;
     // Growth of a variance per period, over the variance of a measurement.
@@ -190,7 +190,7 @@ pub fn design_compensation<T: Real>(
     let limit = body.gear * settings.torque_limit;
     let half = body.half_backlash / body.lever;
     let reaction = reaction(settings, period);
-    let damping = of_both(&body, pole);
+    let damping = loop_damping(&body, pole);
 
     // The peak acceleration of a ramp without a jump is one and a half times its mean.
     let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
@@ -201,13 +201,13 @@ pub fn design_compensation<T: Real>(
     let strike_torque = hardest_strike.min(STRIKE * rated);
     let most_passed = MOST_PASSED * peak;
     let crossing =
-        Crossing::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
-    let motor_damping = on_motor_alone(&body, damping, reaction);
+        CrossingTiming::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
+    let motor_damping = motor_damping_bound(&body, damping, reaction);
     // Impedance of a blow: motor inertia against the stiffness of the joint [N m s/rad].
     let blow = libm::sqrt(body.stiffness * body.motor);
     let landing_speed = LANDING * rated / blow;
     Ok(CompensationTables {
-        clock: ClockTable { rate: real(f64::from(settings.control_rate)), period: real(period) },
+        clock: ControlClockTable { rate: real(f64::from(settings.control_rate)), period: real(period) },
         gear: GearTable {
             motor_per_link: real(body.gear),
             link_per_motor: real(1.0 / body.gear),
@@ -286,7 +286,7 @@ pub fn design_compensation<T: Real>(
             largest_deadband: real(DEADBAND[1]),
             deadband_left: real(libm::exp(-period / DEADBAND_KEPT)),
         },
-        load: LoadTable {
+        load: LoadModelTable {
             variances: [real(load_growth), real(friction_growth), T::ONE],
             // Steady gain for a random walk that grows slowly against the measurement noise.
             gain: real(libm::sqrt(load_growth)),
@@ -297,7 +297,7 @@ pub fn design_compensation<T: Real>(
             planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
             frictions: [body.gear * settings.motor_friction, settings.load_friction].map(real),
         },
-        watch: WatchTable {
+        watch: MonitorTable {
             smoothing: real(-libm::expm1(-period * SLOW_LOAD)),
             least_demand: real(PLANNED * limit),
             leaks: HUNTING_LEAK.map(real),

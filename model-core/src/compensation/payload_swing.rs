@@ -15,51 +15,57 @@ use crate::numbers::arithmetic::{beyond, clamp};
 
 /// Detector of a swing of the load.
 #[derive(Debug, Clone)]
-pub(super) struct LoadSwing<T: Real> {
+pub(super) struct PayloadSwing<T: Real> {
     /// Fast and slow mean of the load [N m].
     means: [T; 2],
     /// Side of the slow mean on which the fast mean last was beyond m: 1, -1, or 0 at first.
     side: T,
     /// Time since the last change of the side, saturating [s].
-    since: T,
+    time_since_change: T,
     /// Changes of the side, each soon after the last [-].
     changes: T,
     /// Remaining time for which the load counts as swinging [s].
-    left: T,
+    remaining_time: T,
 }
 
-impl<T: Real> LoadSwing<T> {
+impl<T: Real> PayloadSwing<T> {
     /// Changes of the side that make a swing [-]: a step with its transient makes one or two.
-    const SWING: T = T::THREE;
+    const CHANGES_OF_A_SWING: T = T::THREE;
 
     /// Half the period of the slowest swing [s]: modes of payloads are above 8 Hz, motions and loads by people below 4
     /// Hz.
-    const HALF_PERIOD: T = T::EIGHTH;
+    const LONGEST_HALF_PERIOD: T = T::EIGHTH;
 
     /// Time without a swing after which the load no longer counts as swinging; also the time at the start during which
     /// it may swing [s].
-    const KEPT: T = T::ONE;
+    const SWING_MEMORY: T = T::ONE;
 
     pub fn new() -> Self {
-        Self { means: [T::ZERO; 2], side: T::ZERO, since: T::ZERO, changes: T::ZERO, left: Self::KEPT }
+        Self {
+            means: [T::ZERO; 2],
+            side: T::ZERO,
+            time_since_change: T::ZERO,
+            changes: T::ZERO,
+            remaining_time: Self::SWING_MEMORY,
+        }
     }
 
     /// True if the load swings, or if it is not yet shown that it does not.
     pub fn may_swing(&self) -> bool {
-        self.left > T::ZERO
+        self.remaining_time > T::ZERO
     }
 
     /// True if a swing was detected.
     pub fn swings(&self) -> bool {
-        self.may_swing() && self.changes >= Self::SWING
+        self.may_swing() && self.changes >= Self::CHANGES_OF_A_SWING
     }
 
     /// Updates the detector by the load of a period [N m]; `None` without a measurement.
-    pub fn take(&mut self, tables: &CompensationTables<T>, reading: Option<T>) {
+    pub fn update(&mut self, tables: &CompensationTables<T>, reading: Option<T>) {
         let period = tables.clock.period;
-        self.since = clamp(self.since + period, T::ZERO, T::ONE);
+        self.time_since_change = clamp(self.time_since_change + period, T::ZERO, T::ONE);
         let Some(reading) = reading.filter(|reading| reading.is_finite()) else { return };
-        self.left = beyond(self.left, period);
+        self.remaining_time = beyond(self.remaining_time, period);
         let [fast, slow] = &mut self.means;
         *fast += tables.switching.smoothing * (reading - *fast);
         *slow += tables.watch.smoothing * (*fast - *slow);
@@ -69,11 +75,12 @@ impl<T: Real> LoadSwing<T> {
         }
         let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
         if side * self.side < T::ZERO {
-            self.changes = if self.since < Self::HALF_PERIOD { self.changes + T::ONE } else { T::ZERO };
-            self.since = T::ZERO;
-            if self.changes >= Self::SWING {
-                self.changes = Self::SWING;
-                self.left = Self::KEPT;
+            self.changes =
+                if self.time_since_change < Self::LONGEST_HALF_PERIOD { self.changes + T::ONE } else { T::ZERO };
+            self.time_since_change = T::ZERO;
+            if self.changes >= Self::CHANGES_OF_A_SWING {
+                self.changes = Self::CHANGES_OF_A_SWING;
+                self.remaining_time = Self::SWING_MEMORY;
             }
         }
         self.side = side;

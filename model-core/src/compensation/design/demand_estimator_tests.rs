@@ -1,7 +1,7 @@
 //! Tests of the demand estimated from the torque of a joint whose data sheet states the friction.
 
-use super::watch_tests::tables;
-use crate::compensation::demand::Demand;
+use super::monitor_tests::tables;
+use crate::compensation::demand_estimator::DemandEstimator;
 use crate::compensation::set_point::Motion;
 use crate::compensation::tables::CompensationTables;
 
@@ -15,12 +15,12 @@ fn with_friction(motor: f32, link: f32) -> CompensationTables<f32> {
 /// Returns the demand over the pressing torque after 2 s of motion in positive direction, as the motion continues and
 /// as it reverses; the torque moves a joint with a friction and a load.
 fn pressing(tables: &CompensationTables<f32>, friction: f32, load: f32) -> [f32; 2] {
-    let mut demand = Demand::new(tables);
+    let mut demand = DemandEstimator::new(tables);
     let at = |speed: f32| Motion { speed, ..Motion::default() };
     let periods = 2.0 * tables.clock.rate / 3.0;
     for _ in 0..periods as u32 {
         demand.plan(tables, &at(0.2)).expect("a number");
-        demand.learn(tables, friction + load);
+        demand.estimate(tables, friction + load);
     }
     [0.2, -0.2].map(|speed| demand.plan(tables, &at(speed)).expect("a number"))
 }
@@ -50,15 +50,15 @@ fn torque_that_the_motor_alone_takes_passes_no_demand() {
     let tables = with_friction(0.0, 0.0);
     let now = Motion { acceleration: 20.0, ..Motion::default() };
     let [alone, both] = [0.0, tables.body.load_inertia].map(|load| {
-        let mut demand = Demand::new(&tables);
+        let mut demand = DemandEstimator::new(&tables);
         for _ in 0..3000 {
             demand.plan(&tables, &now).expect("a number");
-            demand.learn(&tables, (tables.body.motor_inertia + load) * now.acceleration);
+            demand.estimate(&tables, (tables.body.motor_inertia + load) * now.acceleration);
         }
         // The inertia is estimated as well: a fresh instance gives the demand of the designed inertia.
-        let mut fresh = Demand::new(&tables);
+        let mut fresh = DemandEstimator::new(&tables);
         fresh.plan(&tables, &now).expect("a number");
-        (demand.is_passed(), fresh.torque())
+        (demand.is_transmitted(), fresh.torque())
     });
     assert!(!alone.0, "a motor in the open gap is taken to press {} N m", alone.1);
     assert!(both.0, "teeth that pass {} N m are taken for open", both.1);

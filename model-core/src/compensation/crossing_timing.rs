@@ -13,14 +13,14 @@ use crate::numbers::arithmetic::clamp;
 
 /// Times of a crossing.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Crossing<T: Real> {
+pub(crate) struct CrossingTiming<T: Real> {
     /// Duration of the path [s].
     pub duration: T,
     /// Duration of each of the two ramps, to and from the steady speed [s]; at most half of `duration`.
     pub ramp: T,
 }
 
-impl<T: Real> Crossing<T> {
+impl<T: Real> CrossingTiming<T> {
     /// Crossing of a gap of twice `half`. The force on planets struck on the way is at most a share of the rated force
     /// or, if larger, `demand`, up to a share of the peak torque. Ramps are as steep as the motor's torque and the
     /// delays of the loop permit.

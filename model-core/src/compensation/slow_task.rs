@@ -4,27 +4,27 @@ use crate::numbers::Real;
 
 /// Task of a control period besides the torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Turn {
+pub(super) enum SlowTask {
     /// Judgement by the monitor of the loop.
-    Judges,
+    Monitor,
     /// Update of edges and target of the inverse of the backlash.
-    Observes,
+    UpdateEdges,
     /// Update of inertia, friction and load in the inverse of the backlash.
-    Learns,
+    EstimateDemand,
 }
 
-impl Turn {
+impl SlowTask {
     /// Control periods between two turns of a task.
     pub fn periods<T: Real>() -> T {
         T::THREE
     }
 
     /// Task of the next control period.
-    pub fn next(self) -> Self {
+    pub fn following(self) -> Self {
         match self {
-            Self::Judges => Self::Observes,
-            Self::Observes => Self::Learns,
-            Self::Learns => Self::Judges,
+            Self::Monitor => Self::UpdateEdges,
+            Self::UpdateEdges => Self::EstimateDemand,
+            Self::EstimateDemand => Self::Monitor,
         }
     }
 }

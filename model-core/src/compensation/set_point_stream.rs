@@ -7,10 +7,10 @@ use crate::numbers::arithmetic::clamp;
 
 /// State of the stream.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Stream<T: Real> {
+pub(super) struct SetPointStream<T: Real> {
     last: Option<ImpedancePoint<T>>,
     /// Time for which the last set-point has been held [s].
-    age: T,
+    hold_time: T,
     /// Usual interval between set-points [s].
     interval: T,
     /// Rate of the commanded torque [N m/s].
@@ -19,27 +19,27 @@ pub(super) struct Stream<T: Real> {
     travel: T,
 }
 
-impl<T: Real> Stream<T> {
+impl<T: Real> SetPointStream<T> {
     /// Updates the stream by the set-point of a period.
     pub fn step(&mut self, tables: &CompensationTables<T>, point: &ImpedancePoint<T>) {
         match self.last {
             Some(last) if last == *point => {
-                self.age = clamp(self.age + tables.clock.period, T::ZERO, tables.law.longest_hold);
+                self.hold_time = clamp(self.hold_time + tables.clock.period, T::ZERO, tables.law.longest_hold);
                 if self.rests(tables) {
                     self.torque_rate = T::ZERO;
                 }
             }
             Some(last) => {
                 // A set-point held for the longest time gives no interval; a shorter hold gives a new interval.
-                if self.age < tables.law.longest_hold {
-                    self.interval = self.age + tables.clock.period;
+                if self.hold_time < tables.law.longest_hold {
+                    self.interval = self.hold_time + tables.clock.period;
                 }
                 let between = if self.interval > tables.clock.period { self.interval } else { tables.clock.period };
                 let rate = (point.torque - last.torque).over(between);
                 // Half of the change: jitter between set-points is no trend.
                 self.torque_rate = T::HALF * (self.torque_rate + rate);
-                self.travel = point.position.less(last.position.turns, last.position.fraction);
-                self.age = T::ZERO;
+                self.travel = point.position.difference(last.position.turns, last.position.fraction);
+                self.hold_time = T::ZERO;
             }
             None => {}
         }
@@ -61,13 +61,13 @@ impl<T: Real> Stream<T> {
 
     /// Time for which the set-point has been held beyond the mean hold [s]: a moving point is extrapolated over it;
     /// zero at rest.
-    pub fn overdue(&self, tables: &CompensationTables<T>) -> T {
-        if self.rests(tables) { T::ZERO } else { self.age - T::HALF * self.interval }
+    pub fn extrapolation_time(&self, tables: &CompensationTables<T>) -> T {
+        if self.rests(tables) { T::ZERO } else { self.hold_time - T::HALF * self.interval }
     }
 
     /// True if the set-point has been held so long that it stands still or the stream has ended.
     pub fn rests(&self, tables: &CompensationTables<T>) -> bool {
-        let missed = self.interval > T::ZERO && self.age > T::TWO * self.interval;
-        missed || self.age >= tables.law.longest_hold
+        let missed = self.interval > T::ZERO && self.hold_time > T::TWO * self.interval;
+        missed || self.hold_time >= tables.law.longest_hold
     }
 }

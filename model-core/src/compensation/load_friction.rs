@@ -1,0 +1,74 @@
+//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into a gravity torque (weight, a steady push), which does not
+//! depend on the direction of motion, and dry friction, which does. Only motion in both directions separates the two.
+//!
+//! ```text
+//! K = P h / (h P h + r),   (L, f) += K (z - L - f dir),   P -= K h P,   h = (1, dir)
+//! ```
+//!
+//! Symbols: L = `gravity_torque` and f = `friction` [N m], dir = `direction` from -1 to 1, P = `variance` of (L, f), z = measured `torque`,
+//! r = `noise`, the variance of z.
+
+use crate::numbers::Real;
+use crate::numbers::arithmetic::clamp;
+
+/// Gravity torque and dry friction with their covariance.
+#[derive(Debug, Clone)]
+pub(super) struct LoadFrictionFilter<T: Real> {
+    /// Gravity torque [N m].
+    pub gravity_torque: T,
+    /// Dry friction [N m].
+    pub friction: T,
+    /// Variances of gravity torque and friction and their covariance, in the unit of the measurement's variance.
+    variance: [T; 3],
+}
+
+impl<T: Real> LoadFrictionFilter<T> {
+    /// Starts from a known friction, and the variances of gravity torque and friction.
+    pub fn new(friction: T, [gravity_variance, friction_variance]: [T; 2]) -> Self {
+        Self { gravity_torque: T::ZERO, friction, variance: [gravity_variance, friction_variance, T::ZERO] }
+    }
+
+    /// Torque that brakes a link moving in a direction [N m].
+    pub fn torque(&self, direction: T) -> T {
+        self.gravity_torque + self.friction * direction
+    }
+
+    /// Variance of [`Self::torque`].
+    pub fn variance(&self, direction: T) -> T {
+        let [gravity_torque, friction, cross_covariance] = self.variance;
+        gravity_torque + (T::TWO * cross_covariance + friction * direction) * direction
+    }
+
+    /// Adds the growth of the variances per period: gravity torque and friction may change.
+    pub fn predict(&mut self, [gravity_growth, friction_growth]: [T; 2]) {
+        self.variance[0] += gravity_growth;
+        self.variance[1] += friction_growth;
+    }
+
+    /// Resets the variance of the gravity torque, whose value no longer holds.
+    pub fn reset_gravity_variance(&mut self, variance: T) {
+        self.variance = [variance, self.variance[1], T::ZERO];
+    }
+
+    /// Corrects the state by a measured torque of a link moving in a direction; friction stays within 0 and
+    /// `friction_limit`. Returns the correction of the gravity torque.
+    pub fn correct(&mut self, torque: T, direction: T, noise: T, friction_limit: T) -> T {
+        let [gravity_torque, friction, cross_covariance] = self.variance;
+        let (gravity_covariance, friction_covariance) =
+            (gravity_torque + cross_covariance * direction, cross_covariance + friction * direction);
+        let total = gravity_covariance + friction_covariance * direction + noise;
+        if total <= T::ZERO || !total.is_finite() {
+            return T::ZERO;
+        }
+        let (gravity_gain, friction_gain) = (gravity_covariance.over(total), friction_covariance.over(total));
+        let innovation = torque - self.gravity_torque - self.friction * direction;
+        self.gravity_torque += gravity_gain * innovation;
+        self.friction = clamp(self.friction + friction_gain * innovation, T::ZERO, friction_limit);
+        self.variance = [
+            gravity_torque - gravity_gain * gravity_covariance,
+            friction - friction_gain * friction_covariance,
+            cross_covariance - gravity_gain * friction_covariance,
+        ];
+        gravity_gain * innovation
+    }
+}

@@ -1,35 +1,32 @@
-//! Closing speed at which the motor can still brake the link (K12).
+//! Closing speed at which the motor can still brake the link.
 //!
-//! The linear law closes an error e = `error` at the speed w e (w = `rate`), which takes a deceleration of w^2 e.
-//! Beyond some milliradians the motor cannot brake that hard. With the deceleration A that torque, load and inertia
-//! allow (`most`), the link approaches a place no faster than
+//! The linear law closes an error e at the speed w e, which takes a deceleration of w^2 e. Beyond some milliradians the
+//! motor cannot brake that hard. With the deceleration A that torque, load and inertia allow, the link approaches a place
+//! no faster than v(A, e):
 //!
 //! ```text
-//! v(A, e) = w e                      up to e0 = A / w^2
-//!           sqrt(2 A (e - e0 / 2))   beyond
+//! (K12)  A = 0.9 (M_max + all dry friction +- (L + bias))/J,   e_0 = A/w^2
+//!        v(A, e) = w e up to e_0,   sqrt(2 A (e - e_0/2)) beyond;   a' = a - A (1 - e_0/e)
 //! ```
 //!
-//! Value and slope of both parts agree at e0. Up to e0, the linear law applies. A set-point that moves at the speed
-//! u = `speed` and brakes at the rate a = `braked` is approached in one of two ways:
+//! Value and slope of both parts agree at e_0. A set-point that moves at the speed u and brakes at b is approached
 //!
-//! - at v(A - a, e), if the link can brake beside the set-point;
-//! - at v(A, e + u^2 / (2 a)) - u towards the place where the set-point will stop, if the set-point stops before the link
-//!   reaches it, e > (A - a) (u / a)^2 / 2, or if it brakes harder than the link can, a >= A, unless w e is slower.
+//! - with v(A - b, e), if the link can brake beside the set-point;
+//! - with v(A, e + u^2/(2 b)) - u towards the place where the set-point will stop, if the set-point stops before the link
+//!   reaches it, e > (A - b) (u/b)^2/2, or if it brakes harder than the link can, b >= A, unless w e is slower.
 //!
-//! Up to e0 / 4 the linear law applies for every set-point. Otherwise a set-point that brakes about as hard as the link
+//! Up to e_0/4 the linear law applies for every set-point. Otherwise a set-point that brakes about as hard as the link
 //! can would permit no error: with an inertia known to 30 %, the link would be braked too early at every reversal of a
 //! sine, and lag although the torque suffices.
+//!
+//! Symbols: e = `error`, w = `rate`, A = `deceleration`, A J = `torques`, e_0 = `knee`, u = `speed`,
+//! b = `set_point_brakes`, v = `closing`, a' = `acceleration` of the [`Approach`].
 
 use super::load::LoadModel;
 use super::loop_state::LoopState;
+use super::thresholds::BrakingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-
-/// Smallest braking torque assumed for a link that a load drives: a weight that the motor cannot hold is approached
-/// with this torque [N m].
-fn min_braking_torque<T: Real>(tables: &CompensationTables<T>) -> T {
-    T::EIGHTH * tables.limits.motor
-}
 
 /// Motion of the set-point that the link closes on.
 #[derive(Debug, Clone, Copy)]
@@ -74,20 +71,16 @@ pub(super) struct BrakingLimit<T: Real> {
 }
 
 impl<T: Real> BrakingLimit<T> {
-    /// Error over e0 up to which the linear law always applies [-]. Tuned on sines, moves and random motions that ask
-    /// for 0.5 to 3 times the torque: 1/8 changes the figures by less than a tenth, 1 makes the peaks of short moves up
-    /// to 1.5 times larger.
-    const LINEAR_ERROR_SHARE: T = T::QUARTER;
+    const THRESHOLDS: BrakingThresholds<T> = BrakingThresholds::VALUES;
 
     /// Computes braking torques and inertia from the estimates.
     pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, state: &LoopState<T>) -> Self {
         let [bias, motor_friction] = state.losses;
         let [driven, still] = [load.gravity_torque() + bias, tables.limits.motor + load.friction() + motor_friction];
-        let of = |torque: T| {
-            tables.limits.braking
-                * if torque > min_braking_torque(tables) { torque } else { min_braking_torque(tables) }
-        };
-        Self { inertia: state.inertia, torques: [of(still - driven), of(still + driven)], rate: tables.law.rate }
+        let least = Self::THRESHOLDS.min_torque_share * tables.limits.motor;
+        let torques = [still - driven, still + driven]
+            .map(|torque| tables.limits.braking * if torque > least { torque } else { least });
+        Self { inertia: state.inertia, torques, rate: tables.law.rate }
     }
 
     /// Acceleration of a link under the motor's torque or, in the open gap, under its load alone [rad/s^2].
@@ -107,36 +100,51 @@ impl<T: Real> BrakingLimit<T> {
 
     /// Returns the approach that replaces the linear law; `None` while the linear law applies. `error` is the set-point
     /// less the link [rad].
-    pub fn approach(&self, error: T, course: &SetPointMotion<T>) -> Option<Approach<T>> {
-        let moves_forward = if course.speed == T::ZERO { error > T::ZERO } else { course.speed > T::ZERO };
-        let [back, on] = self.torques;
-        let (side, against, against_return) = if moves_forward { (T::ONE, on, back) } else { (-T::ONE, back, on) };
-        let [error, speed, acceleration, ahead] =
-            [error, course.speed, course.acceleration, course.ahead].map(|way| side * way);
-        let hardest = if ahead < acceleration { ahead } else { acceleration };
-        let braked = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
-        // The link cannot brake beside a set-point that brakes harder.
-        let unmatched = self.inertia * braked >= against;
-        let needed = self.inertia * self.rate * self.rate * error;
-        let (needed, against_error, left) = if error < T::ZERO {
-            (-needed, against_return, against_return)
+    pub fn approach(&self, error: T, set_point: &SetPointMotion<T>) -> Option<Approach<T>> {
+        let forward = if set_point.speed == T::ZERO { error > T::ZERO } else { set_point.speed > T::ZERO };
+        let [backward_torque, forward_torque] = self.torques;
+        // In the direction of the set-point's motion: `against` brakes the link, `back` brakes its way back.
+        let (side, against, back) = if forward {
+            (T::ONE, forward_torque, backward_torque)
         } else {
-            (needed, against, against - self.inertia * braked)
+            (-T::ONE, backward_torque, forward_torque)
         };
-        if needed <= Self::LINEAR_ERROR_SHARE * against_error || needed <= left && !unmatched {
+        let [error, speed, acceleration, ahead] =
+            [error, set_point.speed, set_point.acceleration, set_point.ahead].map(|value| side * value);
+        let hardest = if ahead < acceleration { ahead } else { acceleration };
+        let set_point_brakes = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
+        // The link cannot brake beside a set-point that brakes harder.
+        let unmatched = self.inertia * set_point_brakes >= against;
+        if self.linear_law_applies(error, against, back, set_point_brakes) {
             return None;
         }
-        let most = against.over(self.inertia);
+        let deceleration = against.over(self.inertia);
         let beside = if error < T::ZERO {
-            self.towards(against_return.over(self.inertia), error, acceleration)
+            self.towards(back.over(self.inertia), error, acceleration)
         } else if unmatched {
             Approach { closing: self.rate * error, acceleration }
         } else {
-            self.towards(most - braked, error, acceleration)
+            self.towards(deceleration - set_point_brakes, error, acceleration)
         };
-        let approach =
-            if braked > T::ZERO { self.nearer_of_place_and_rest(beside, most, error, speed, braked) } else { beside };
+        let approach = if set_point_brakes > T::ZERO {
+            self.nearer_of_place_and_rest(beside, deceleration, error, speed, set_point_brakes)
+        } else {
+            beside
+        };
         Some(Approach { closing: side * approach.closing, acceleration: side * approach.acceleration })
+    }
+
+    /// True if the linear law needs no more torque than braking leaves, or the error is below e_0/4. `against` brakes the
+    /// link in the direction of the set-point's motion, `back` on its way back [N m].
+    fn linear_law_applies(&self, error: T, against: T, back: T, set_point_brakes: T) -> bool {
+        let unmatched = self.inertia * set_point_brakes >= against;
+        let needed = self.inertia * self.rate * self.rate * error;
+        let (needed, available, left) = if error < T::ZERO {
+            (-needed, back, back)
+        } else {
+            (needed, against, against - self.inertia * set_point_brakes)
+        };
+        needed <= Self::THRESHOLDS.linear_error_share * available || needed <= left && !unmatched
     }
 
     /// Torque through the teeth after a time [N m]. The demand jumps where braking begins, which its present rate does
@@ -145,20 +153,20 @@ impl<T: Real> BrakingLimit<T> {
         &self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
-        lag: &TrackingError<T>,
-        course: &SetPointMotion<T>,
+        tracking: &TrackingError<T>,
+        set_point: &SetPointMotion<T>,
         time: T,
     ) -> T {
-        let rate = lag.rate + time * lag.acceleration;
-        let error = lag.error + time * (lag.rate + T::HALF * time * lag.acceleration);
-        let growth = time.over(tables.crossing.lead) * (course.ahead - course.acceleration);
-        let course = SetPointMotion {
-            speed: course.speed + time * (course.acceleration + T::HALF * growth),
-            acceleration: course.acceleration + growth,
-            ..*course
+        let rate = tracking.rate + time * tracking.acceleration;
+        let error = tracking.error + time * (tracking.rate + T::HALF * time * tracking.acceleration);
+        let growth = time.over(tables.crossing.lead) * (set_point.ahead - set_point.acceleration);
+        let set_point = SetPointMotion {
+            speed: set_point.speed + time * (set_point.acceleration + T::HALF * growth),
+            acceleration: set_point.acceleration + growth,
+            ..*set_point
         };
-        let linear = Approach { closing: self.rate * error, acceleration: course.acceleration };
-        let approach = self.approach(error, &course).unwrap_or(linear);
+        let linear = Approach { closing: self.rate * error, acceleration: set_point.acceleration };
+        let approach = self.approach(error, &set_point).unwrap_or(linear);
         tables.body.load_inertia * approach.acceleration
             + tables.law.damping * (approach.closing + rate)
             + load.gravity_torque()
@@ -168,12 +176,19 @@ impl<T: Real> BrakingLimit<T> {
 
     /// Approach to a set-point that moves and brakes: towards the place where the set-point will stop, if it stops
     /// first or brakes harder than the link can; otherwise `beside`.
-    fn nearer_of_place_and_rest(&self, beside: Approach<T>, most: T, error: T, speed: T, braked: T) -> Approach<T> {
-        let time_to_rest = speed.over(braked);
-        let to_rest = self.towards(most, error + T::HALF * speed * time_to_rest, T::ZERO);
+    fn nearer_of_place_and_rest(
+        &self,
+        beside: Approach<T>,
+        deceleration: T,
+        error: T,
+        speed: T,
+        set_point_brakes: T,
+    ) -> Approach<T> {
+        let time_to_rest = speed.over(set_point_brakes);
+        let to_rest = self.towards(deceleration, error + T::HALF * speed * time_to_rest, T::ZERO);
         let to_rest = Approach { closing: to_rest.closing - speed, ..to_rest };
-        let rests_first = if most > braked {
-            error > T::HALF * (most - braked) * time_to_rest * time_to_rest
+        let rests_first = if deceleration > set_point_brakes {
+            error > T::HALF * (deceleration - set_point_brakes) * time_to_rest * time_to_rest
         } else {
             to_rest.closing < beside.closing
         };

@@ -14,6 +14,7 @@ use super::load_friction::LoadFrictionFilter;
 use super::loop_state::friction_direction;
 use super::set_point::Motion;
 use super::slow_task::SlowTask;
+use super::thresholds::{DemandThresholds, EstimateBounds};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -46,30 +47,15 @@ struct PlannedTorque<T: Real> {
 }
 
 impl<T: Real> DemandEstimator<T> {
-    /// Rate at which the inertia estimate follows [1/s]: a few swings of a motion.
-    const INERTIA_RATE: T = T::TWO;
-
-    /// Rates at which the gravity torque and the friction follow once they are known [1/s]. At 8 the gravity torque follows a
-    /// loop that swings at 5 Hz, and its sign sustains the swing.
-    const LOAD_RATES: [T; 2] = [T::THREE, T::HALF];
-
-    /// Smallest accelerating torque for estimating the inertia, over the motor's limit [-]: friction hides smaller
-    /// torques.
-    const INERTIA_MIN_TORQUE: T = T::TWENTIETH;
-
-    /// Standard deviation of unexplained torque, over the motor's limit [-].
-    const TORQUE_DEVIATION: T = T::TWENTIETH;
-
-    /// Standard deviation of an unknown load, over the motor's limit [-]. Of ten measurements the first then weigh
-    /// most.
-    const UNKNOWN_LOAD_DEVIATION: T = T::EIGHTH;
+    const THRESHOLDS: DemandThresholds<T> = DemandThresholds::VALUES;
 
     /// Starts from the designed values.
     pub fn new(tables: &CompensationTables<T>) -> Self {
         let [motor, link] = tables.load.frictions;
         let friction = motor + link;
         // Friction on a data sheet may be wrong by a third, and a small friction may be missing.
-        let deviation = T::THIRD * friction + T::QUARTER * Self::TORQUE_DEVIATION * tables.limits.motor;
+        let deviation = Self::THRESHOLDS.friction_deviation * friction
+            + Self::THRESHOLDS.omitted_friction_deviation * Self::THRESHOLDS.torque_deviation * tables.limits.motor;
         Self {
             inertia: T::ONE,
             load: LoadFrictionFilter::new(friction, [Self::unknown_load_variance(tables), deviation * deviation]),
@@ -83,7 +69,7 @@ impl<T: Real> DemandEstimator<T> {
 
     /// Variance of an unknown load [N^2 m^2].
     fn unknown_load_variance(tables: &CompensationTables<T>) -> T {
-        let deviation = Self::UNKNOWN_LOAD_DEVIATION * tables.limits.motor;
+        let deviation = Self::THRESHOLDS.unknown_load_deviation * tables.limits.motor;
         deviation * deviation
     }
 
@@ -110,7 +96,7 @@ impl<T: Real> DemandEstimator<T> {
     /// True if the recent torque has passed more than half of the demand to the teeth, with the sign of the demand.
     pub fn is_transmitted(&self) -> bool {
         let transmitted = if self.torque < T::ZERO { -self.transmitted } else { self.transmitted };
-        transmitted > T::HALF * self.torque.abs()
+        transmitted > Self::THRESHOLDS.transmitted_share * self.torque.abs()
     }
 
     /// Resets the variance of the gravity torque, which has changed.
@@ -157,23 +143,25 @@ impl<T: Real> DemandEstimator<T> {
         }
         self.transmitted +=
             SlowTask::periods::<T>() * tables.law.back_calculation * (torque - alone - self.transmitted);
-        let share = Self::INERTIA_RATE * time;
+        let share = Self::THRESHOLDS.inertia_rate * time;
         let faded = self.peak_square - T::HALF * share * self.peak_square;
         self.peak_square = if square > faded { square } else { faded };
-        let least = Self::INERTIA_MIN_TORQUE * limit;
+        let least = Self::THRESHOLDS.inertia_min_torque * limit;
         if self.peak_square > least * least {
             let excess = braking_torque - self.load.torque(direction);
             // The link inertia stays within a quarter to four times the designed value, as everywhere.
             let by = T::TWO * share * (excess * designed).over(self.peak_square);
             let link = tables.body.load_share;
-            let [lightest, heaviest] = [T::QUARTER, T::FOUR].map(|ratio| T::ONE + link * (ratio - T::ONE));
+            let [lightest, heaviest] =
+                EstimateBounds::<T>::VALUES.link_inertia_ratio.map(|ratio| T::ONE + link * (ratio - T::ONE));
             self.inertia = clamp(self.inertia + by, lightest, heaviest);
         }
         // At rest friction may hold any part of the torque.
-        let (unexplained, held) = (Self::TORQUE_DEVIATION * limit, self.load.friction * (T::ONE - direction.abs()));
+        let (unexplained, held) =
+            (Self::THRESHOLDS.torque_deviation * limit, self.load.friction * (T::ONE - direction.abs()));
         let noise = unexplained * unexplained + held * held;
-        self.load.predict(Self::LOAD_RATES.map(|rate| rate * time * (rate * time) * noise));
-        self.load.correct(braking_torque, direction, noise, T::HALF * limit);
+        self.load.predict(Self::THRESHOLDS.load_rates.map(|rate| rate * time * (rate * time) * noise));
+        self.load.correct(braking_torque, direction, noise, Self::THRESHOLDS.max_friction * limit);
         self.load.gravity_torque = clamp(self.load.gravity_torque, -limit, limit);
     }
 }

@@ -4,6 +4,7 @@
 
 use super::load::LoadModel;
 use super::loop_state::LoopState;
+use super::thresholds::EasingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
@@ -22,9 +23,7 @@ pub(super) struct Easing<T: Real> {
 }
 
 impl<T: Real> Easing<T> {
-    /// Largest error of a steady load, and travel by which the link gives way, over the first dead band [-]: two counts
-    /// of a good encoder.
-    const MAX_TRAVEL: T = T::HALF;
+    const THRESHOLDS: EasingThresholds<T> = EasingThresholds::VALUES;
 
     pub fn new() -> Self {
         Self { load: T::ZERO, steady_time: T::ZERO, start_error: None, gave_way: false }
@@ -44,7 +43,7 @@ impl<T: Real> Easing<T> {
             *self = Self::new();
             return T::ONE;
         }
-        let max_travel = Self::MAX_TRAVEL * tables.rest.first_deadband * state.half_gap;
+        let max_travel = Self::THRESHOLDS.max_travel * tables.rest.first_deadband * state.half_gap;
         let gives_way = |start_error: T| !friction_holds || (state.error - start_error).abs() > max_travel;
         self.gave_way = (self.gave_way || self.start_error.is_some_and(gives_way)) && !load.external_impact(tables);
         let measured = tables.switching.measured;
@@ -62,6 +61,6 @@ impl<T: Real> Easing<T> {
         if self.steady_time >= tables.rest.hunting {
             self.start_error = self.start_error.or(Some(state.error));
         }
-        if self.start_error.is_some() { T::HALF } else { T::ONE }
+        if self.start_error.is_some() { Self::THRESHOLDS.held_share } else { T::ONE }
     }
 }

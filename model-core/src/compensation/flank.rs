@@ -1,37 +1,37 @@
-//! Selects the flank in use and the time of its change, and moves the motor through the gap. Assumption: without a flank the link
-//! moves freely. [`transitions`](super::transitions) maps the events of a period to an action; this file detects the events (`detect_events`),
-//! executes the actions (`execute`) and computes the torque of each stage (`step`).
+//! Selects the flank in use and the time of its change, and moves the motor through the gap. Assumption: without a flank
+//! the link moves freely. [`transitions`](super::transitions) maps the events of a period to an action; this file detects
+//! the events, executes the actions and computes the torque of each stage.
 //!
 //! ```text
-//! (K5)   side (now + ahead) < 0,   side ahead < 0                               `detect_events`
+//! (K5)   side (now + ahead) < 0,   side ahead < 0                        `demand_turned`
 //! (K9)   torque = J_m a_path(time + T_r) + stiffness (path - motor)
-//!                 + D_m (path speed - w_m) + losses                             `step`
-//! (K10)  landing speed = max(0.03 rated, 0.4 |demand|)/sqrt(S J_m)              `landing_speed`
-//! (K13)  0.3 M + min((g - 1) M, 0.3 K h) < -side (2 ahead - now)                `detect_events`, g = `hysteresis`
-//! (K14)  torque = stiffness (shift - gap) + D_m (w_l - w_m) + losses            `centring`
-//! (K16)  torque += impulse_deficit/(1.15 T_c)                                   `step`, `add_impulse_deficit`
+//!                 + D_m (path speed - w_m) + losses                      `path_torque`
+//! (K10)  landing speed = max(0.03 rated, 0.4 |demand|)/sqrt(S J_m)       `landing_speed`
+//! (K13)  0.3 M + min((g - 1) M, 0.3 K h) < -side (2 ahead - now)         `demand_turned`, g = `hysteresis`
+//! (K14)  torque = stiffness (shift - gap) + D_m (w_l - w_m) + losses     `centring_torque`
+//! (K16)  torque += deficit/(1.15 T_c)                                    `contact_torque`, `add_impulse_deficit`
 //! ```
+//!
+//! Symbols: side = `flank.sign()`, now = `demand.now`, ahead = `demand.after_crossing`, deficit = `impulse_deficit`,
+//! h = `half_gap`, shift = `flank_shift`.
 
 use super::control_demand::ControlDemand;
 use super::crossing_path::CrossingPath;
 use super::crossing_timing::CrossingTiming;
 use super::loop_state::LoopState;
 use super::set_point::{Position, Stage};
+use super::thresholds::FlankThresholds;
 use super::transitions::{Action, Event, Events};
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// Closing speed, in landing speeds, below which a motor on a path counts as braked: the force of a blow is
-/// proportional to the speed, and planets struck on the way cause four times the force of a landing.
-const BRAKED_LANDING_SPEEDS: i32 = 4;
-
 /// Events of a period.
 struct DetectedEvents {
     events: Events,
     /// Impedance mode: now and after a crossing, the demand is on the other flank, without regard to the hysteresis.
-    against: bool,
+    spring_undecided: bool,
 }
 
 /// Flank in use and path to it.
@@ -45,7 +45,7 @@ pub(super) struct FlankControl<T: Real> {
     origin: Position<T>,
     elapsed: T,
     /// Opening at the beginning of the landing [rad].
-    opened: T,
+    landing_opening: T,
     /// Share of the law's torque applied after a landing, 0 to 1 [-].
     rise: T,
     /// Impulse that the link has missed while no flank carried, `impulse_deficit` in (K16) [N m s].
@@ -53,7 +53,7 @@ pub(super) struct FlankControl<T: Real> {
     /// Factor g of the switching hysteresis (K13); grows with every change of the flank [-].
     hysteresis: T,
     /// True once the demand has asked for the flank in use since the motor set out for it, or the joint rests.
-    asked: bool,
+    requested: bool,
     /// Time for which no flank has been needed, saturating [s].
     unneeded: T,
     /// True if the motor rested in the middle of the gap in the previous period.
@@ -61,9 +61,7 @@ pub(super) struct FlankControl<T: Real> {
 }
 
 impl<T: Real> FlankControl<T> {
-    /// Time without need of a flank after which the motor moves to the middle of the gap, over `rest.hunting` [-]: a
-    /// load that passes through zero is absent for a shorter time.
-    const UNNEEDED: T = T::HALF;
+    const THRESHOLDS: FlankThresholds<T> = FlankThresholds::VALUES;
 
     pub fn new() -> Self {
         Self {
@@ -72,11 +70,11 @@ impl<T: Real> FlankControl<T> {
             path: CrossingPath::default(),
             origin: Position::default(),
             elapsed: T::ZERO,
-            opened: T::ZERO,
+            landing_opening: T::ZERO,
             rise: T::ONE,
             impulse_deficit: T::ZERO,
             hysteresis: T::ONE,
-            asked: true,
+            requested: true,
             unneeded: T::ZERO,
             centred: false,
         }
@@ -88,7 +86,7 @@ impl<T: Real> FlankControl<T> {
 
     /// True while the motor has arrived early: it touches a flank that the demand does not ask for yet.
     pub fn arrived_early(&self) -> bool {
-        self.stage == Stage::Touching && !self.asked
+        self.stage == Stage::Touching && !self.requested
     }
 
     /// Flank that carries or is approached.
@@ -99,7 +97,7 @@ impl<T: Real> FlankControl<T> {
     /// Resets the state while the estimates are invalid; a flank in contact becomes the flank in use.
     pub fn reset(&mut self, state: &LoopState<T>) {
         self.stage = Stage::Touching;
-        self.asked = true;
+        self.requested = true;
         self.unneeded = T::ZERO;
         self.rise = T::ONE;
         self.impulse_deficit = T::ZERO;
@@ -112,47 +110,73 @@ impl<T: Real> FlankControl<T> {
         let left = tables.switching.transient_left;
         let left = if demand.rests_unloaded { left * left } else { left };
         self.hysteresis = T::ONE + left * (self.hysteresis - T::ONE);
-        let enough = Self::UNNEEDED * tables.rest.hunting;
-        self.centred = self.unneeded >= enough;
-        if demand.needs_no_flank && self.stage == Stage::Touching {
-            self.unneeded = clamp(self.unneeded + tables.clock.period, T::ZERO, enough);
-            if self.unneeded >= enough {
-                return centring(tables, state);
-            }
-        } else {
-            self.unneeded = T::ZERO;
+        if self.rests_in_the_middle(tables, demand) {
+            return centring_torque(tables, state);
         }
         if self.centred {
             self.flank = Flank::towards(demand.after_crossing).unwrap_or(self.flank);
         }
-        let opened = self.opening(state);
-        let detected = self.detect_events(tables, state, demand, opened);
+        let opening = self.opening(state);
+        let detected = self.detect_events(tables, state, demand, opening);
         if let Some(action) = detected.events.action(self.stage) {
-            self.execute(tables, state, demand, opened, action);
+            self.execute(tables, state, demand, opening, action);
         }
-        let side: T = self.flank.sign();
         if self.stage == Stage::Touching {
-            self.rise = clamp(self.rise + tables.landing.rise, T::ZERO, T::ONE);
-            let repaid = self.rise * self.impulse_deficit * tables.landing.repayment;
-            self.add_impulse_deficit(tables, (T::ONE - self.rise) * demand.now - repaid, demand);
-            let torque = self.rise * demand.law_torque + repaid;
-            self.asked |= demand.rests || side * demand.now > T::ZERO;
-            // If the motor arrives early, torque of the old sign is not applied: it would push the motor off the new
-            // flank.
-            let minimum = follow_link(tables, state, demand, state.transmission_error_speed);
-            let stays = self.arrived_early() && !detected.against || side * demand.expected_start_torque > T::ZERO;
-            return if stays && side * (torque - minimum) < T::ZERO { minimum } else { torque };
+            return self.contact_torque(tables, state, demand, detected.spring_undecided);
         }
         self.elapsed += tables.clock.period;
         self.add_impulse_deficit(tables, demand.now, demand);
         if self.stage == Stage::Landing {
-            // The landing uses speed only, not the position of the flank: a wrong width costs time, not force. The
-            // speed grows, so that a receding flank is reached.
-            let speed = landing_speed(tables, demand.now) + tables.landing.acceleration * self.elapsed;
-            let closing = side * clamp(speed, T::ZERO, tables.landing.fastest);
-            return follow_link(tables, state, demand, closing);
+            self.landing_torque(tables, state, demand)
+        } else {
+            self.path_torque(tables, state)
         }
-        // Torque acts one reaction time after its command.
+    }
+
+    /// Counts the time for which no flank has been needed. Returns true once the motor is to rest in the middle of the
+    /// gap (K14).
+    fn rests_in_the_middle(&mut self, tables: &CompensationTables<T>, demand: &ControlDemand<T>) -> bool {
+        let required = Self::THRESHOLDS.unneeded_time * tables.rest.hunting;
+        self.centred = self.unneeded >= required;
+        if !(demand.needs_no_flank && self.stage == Stage::Touching) {
+            self.unneeded = T::ZERO;
+            return false;
+        }
+        self.unneeded = clamp(self.unneeded + tables.clock.period, T::ZERO, required);
+        self.unneeded >= required
+    }
+
+    /// Torque while a flank carries: the torque of the law, rising after a landing, and the impulse that the link has
+    /// missed (K16) [N m].
+    fn contact_torque(
+        &mut self,
+        tables: &CompensationTables<T>,
+        state: &LoopState<T>,
+        demand: &ControlDemand<T>,
+        spring_undecided: bool,
+    ) -> T {
+        let side: T = self.flank.sign();
+        self.rise = clamp(self.rise + tables.landing.rise, T::ZERO, T::ONE);
+        let recovery = self.rise * self.impulse_deficit * tables.landing.repayment;
+        self.add_impulse_deficit(tables, (T::ONE - self.rise) * demand.now - recovery, demand);
+        let torque = self.rise * demand.law_torque + recovery;
+        self.requested |= demand.rests || side * demand.now > T::ZERO;
+        // If the motor arrives early, torque of the old sign is not applied: it would push the motor off the new flank.
+        let minimum = follow_link(tables, state, demand, state.transmission_error_speed);
+        let stays = self.arrived_early() && !spring_undecided || side * demand.expected_start_torque > T::ZERO;
+        if stays && side * (torque - minimum) < T::ZERO { minimum } else { torque }
+    }
+
+    /// Torque that closes on the flank by speed only, not by its position [N m]: a wrong width costs time, not force.
+    /// The speed grows, so that a receding flank is reached.
+    fn landing_torque(&self, tables: &CompensationTables<T>, state: &LoopState<T>, demand: &ControlDemand<T>) -> T {
+        let speed = landing_speed(tables, demand.now) + tables.landing.acceleration * self.elapsed;
+        let closing = self.flank.sign::<T>() * clamp(speed, T::ZERO, tables.landing.fastest);
+        follow_link(tables, state, demand, closing)
+    }
+
+    /// Torque that moves the motor along the path (K9) [N m]. Torque acts one reaction time after its command.
+    fn path_torque(&self, tables: &CompensationTables<T>, state: &LoopState<T>) -> T {
         let [target, rate, _] = self.path.at(self.elapsed);
         let [_, _, acceleration] = self.path.at(self.elapsed + tables.crossing.reaction);
         tables.body.motor_inertia * acceleration
@@ -167,56 +191,61 @@ impl<T: Real> FlankControl<T> {
         tables: &CompensationTables<T>,
         state: &LoopState<T>,
         demand: &ControlDemand<T>,
-        opened: T,
+        opening: T,
     ) -> DetectedEvents {
-        let (landing, switching) = (&tables.landing, &tables.switching);
         let side: T = self.flank.sign();
-        // Contact reported beyond the middle of the gap is ignored: teeth that just leave the near flank seem to touch
-        // the far one.
-        let contact_felt = state.contact == Some(self.flank) && opened < state.half_gap;
-        // A soft landing shows in the position before it shows in the force.
-        let contact_seen = opened < landing.landed * state.half_gap;
-        // A flank that stops the approach is met, wherever the estimates place it.
-        let stopped = self.stage == Stage::Landing
-            && self.elapsed > tables.crossing.shortest_ramp + tables.crossing.shortest_ramp
-            && opened < landing.opening * state.half_gap
-            && self.opened - opened < T::HALF * landing.speed * self.elapsed;
-        let touching = contact_felt || contact_seen || stopped;
-        let carries = self.rise >= T::ONE;
         let [now, ahead] =
             [demand.now, demand.after_crossing].map(|torque| side * (torque + demand.expected_start_torque));
-        let turned = now + ahead < -switching.planned && ahead < -switching.planned;
-        // Measured demand must exceed its noise, by more soon after a flank change (K13).
+        // Contact reported beyond the middle of the gap is ignored: teeth that just leave the near flank seem to touch
+        // the far one.
+        let felt = state.contact == Some(self.flank) && opening < state.half_gap;
+        // A soft landing shows in the position before it shows in the force.
+        let seen = opening < tables.landing.landed * state.half_gap;
+        let touching = felt || seen || self.stops_the_motor(tables, state, opening);
+        let carries = self.rise >= T::ONE;
+        // A flank just met carries first: no change while it is felt and the torque still rises.
+        let may_change = self.stage != Stage::Touching || carries || !felt;
+        // In impedance mode only the flank that the spring presses is needed: below the hysteresis the spring's own
+        // torque finds it.
+        let spring_undecided = demand.is_impedance && now < T::ZERO && ahead < T::ZERO;
+        let opens = !touching && carries && opening > tables.landing.opening * state.half_gap;
+        // A motor that is not braked would strike the flank: braking comes first, unless the blow is no harder than the
+        // torque to be carried, or the link is pushed harder than the teeth's limit and every moment counts.
+        let may_land = self.stage != Stage::Crossing || demand.external_impact || self.is_braked(tables, state, demand);
+        let events = Events::UNDERWAY
+            .with(Event::DemandTurned, may_change && self.demand_turned(tables, state, now, ahead))
+            .with(Event::SpringUndecided, spring_undecided)
+            .with(Event::FlankLost, opens && opening > Self::THRESHOLDS.lost_opening * state.half_gap)
+            .with(Event::FlankOpening, opens)
+            .with(Event::FlankMet, touching && may_land)
+            .with(Event::PathEnded, self.elapsed >= self.path.duration());
+        DetectedEvents { events, spring_undecided }
+    }
+
+    /// True if the demand, positive towards the flank in use, changes its sign (K5), by more than the hysteresis (K13):
+    /// measured demand must exceed its noise, by more soon after a flank change.
+    fn demand_turned(&self, tables: &CompensationTables<T>, state: &LoopState<T>, now: T, ahead: T) -> bool {
+        let switching = &tables.switching;
+        let planned = now + ahead < -switching.planned && ahead < -switching.planned;
         let later = ahead + ahead - now;
         let most = switching.most_growth * state.half_gap;
         let grown = clamp(switching.measured * (self.hysteresis - T::ONE), T::ZERO, most);
-        let turned = turned && later < -(switching.measured * switching.least + grown);
-        // A flank just met carries first: no change while it is felt and the torque still rises.
-        let turned = turned && (self.stage != Stage::Touching || carries || !contact_felt);
-        // In impedance mode only the flank that the spring presses is needed: below the hysteresis the spring's own
-        // torque finds it.
-        let against = demand.is_impedance && now < T::ZERO && ahead < T::ZERO;
-        let opens = !touching && carries && opened > landing.opening * state.half_gap;
-        let lost = opens && opened > T::HALF * state.half_gap;
-        // A motor that is not braked would strike the flank: braking comes first, unless the blow is no harder than the
-        // torque to be carried, or the link is pushed harder than the teeth's limit and every moment counts.
-        let met = touching
-            && (self.stage != Stage::Crossing || demand.external_impact || self.is_braked(tables, state, demand));
-        let ended = self.elapsed >= self.path.duration();
-        let events = Events::UNDERWAY
-            .with(Event::DemandTurned, turned)
-            .with(Event::SpringUndecided, against)
-            .with(Event::FlankLost, lost)
-            .with(Event::FlankOpening, opens)
-            .with(Event::FlankMet, met)
-            .with(Event::PathEnded, ended);
-        DetectedEvents { events, against }
+        planned && later < -(switching.measured * switching.least + grown)
+    }
+
+    /// True if the flank has stopped a landing motor, wherever the estimates place the flank.
+    fn stops_the_motor(&self, tables: &CompensationTables<T>, state: &LoopState<T>, opening: T) -> bool {
+        let travel = self.landing_opening - opening;
+        self.stage == Stage::Landing
+            && self.elapsed > tables.crossing.shortest_ramp + tables.crossing.shortest_ramp
+            && opening < tables.landing.opening * state.half_gap
+            && travel < Self::THRESHOLDS.stopped_travel * tables.landing.speed * self.elapsed
     }
 
     /// True if the motor closes on the flank so slowly that the blow is no harder than the torque to be carried.
     fn is_braked(&self, tables: &CompensationTables<T>, state: &LoopState<T>, demand: &ControlDemand<T>) -> bool {
         let closing = self.flank.sign::<T>() * (state.motor_speed - state.link_speed);
-        closing < T::from_i32(BRAKED_LANDING_SPEEDS) * landing_speed(tables, demand.now)
+        closing < T::from_i32(Self::THRESHOLDS.braked_speed) * landing_speed(tables, demand.now)
     }
 
     /// Executes an action.
@@ -225,7 +254,7 @@ impl<T: Real> FlankControl<T> {
         tables: &CompensationTables<T>,
         state: &LoopState<T>,
         demand: &ControlDemand<T>,
-        opened: T,
+        opening: T,
         action: Action,
     ) {
         let before = core::mem::replace(&mut self.stage, action.stage());
@@ -237,12 +266,12 @@ impl<T: Real> FlankControl<T> {
             Action::CrossBack => self.start_crossing(tables, state, demand, before),
             Action::Land => {
                 self.elapsed = T::ZERO;
-                self.opened = opened;
+                self.landing_opening = opening;
             }
             Action::Carry => self.rise = if demand.external_impact { T::ONE } else { T::ZERO },
             Action::LetSpringFind => {
                 let other = self.flank.opposite();
-                if state.contact == Some(other) && opened > state.half_gap {
+                if state.contact == Some(other) && opening > state.half_gap {
                     self.flank = other;
                 }
             }
@@ -295,7 +324,7 @@ impl<T: Real> FlankControl<T> {
         } else {
             self.remaining_crossing(tables, state, demand)
         };
-        self.asked = false;
+        self.requested = false;
         self.hysteresis = clamp(self.hysteresis + self.hysteresis + T::TWO, T::ONE, tables.switching.most_factor);
         let start = [state.motor_position + tables.crossing.reaction * state.motor_speed, state.motor_speed];
         self.plan_path(tables, state, demand, crossing, start);
@@ -309,10 +338,10 @@ impl<T: Real> FlankControl<T> {
         state: &LoopState<T>,
         demand: &ControlDemand<T>,
     ) -> CrossingTiming<T> {
-        let opened = self.opening(state);
-        let opening = self.flank.sign::<T>() * (state.link_speed - state.motor_speed);
-        let still = tables.crossing.shortest_ramp * clamp(opening, T::ZERO, opening.abs());
-        let half = clamp(T::HALF * (opened + still), T::ZERO, state.half_gap);
+        let opening = self.opening(state);
+        let opening_speed = self.flank.sign::<T>() * (state.link_speed - state.motor_speed);
+        let braking_travel = tables.crossing.shortest_ramp * clamp(opening_speed, T::ZERO, opening_speed.abs());
+        let half = clamp(T::HALF * (opening + braking_travel), T::ZERO, state.half_gap);
         CrossingTiming::new(tables, half, demand.at_far_flank)
     }
 
@@ -343,7 +372,7 @@ impl<T: Real> FlankControl<T> {
 }
 
 /// Torque that moves the motor to the middle of the gap and holds it there, beside a link at rest (K14) [N m].
-fn centring<T: Real>(tables: &CompensationTables<T>, state: &LoopState<T>) -> T {
+fn centring_torque<T: Real>(tables: &CompensationTables<T>, state: &LoopState<T>) -> T {
     let rate = state.link_speed - state.motor_speed;
     tables.crossing.stiffness * (state.flank_shift - state.gap)
         + tables.law.motor_damping * rate

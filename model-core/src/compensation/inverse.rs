@@ -23,6 +23,7 @@ use super::loop_state::LoopState;
 use super::plain::swinging_motor_damping;
 use super::set_point::Motion;
 use super::slow_task::SlowTask;
+use super::thresholds::InverseThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -52,24 +53,7 @@ pub(super) struct BacklashInverse<T: Real> {
 }
 
 impl<T: Real> BacklashInverse<T> {
-    /// Part of the lost motion that is not inverted [-]. An unforeseen change of the flank causes an error of half the
-    /// lost motion without an inverse, of all of it with a full inverse.
-    const UNINVERTED_SHARE: T = T::QUARTER;
-
-    /// Double pole of the path of the shift, over the bandwidth [-]: a crossing takes little more than a time constant
-    /// of the loop, and less torque than the limit of the bandwidth leaves.
-    const SHIFT_POLE_RATIO: T = T::THREE;
-
-    /// Rate at which an edge is followed, over the bandwidth [-]: slower than any payload swings.
-    const EDGE_RATE_RATIO: T = T::EIGHTH;
-
-    /// Time for which a flank is pressed before its edge is measured [time constants of the loop]: a crossing and its
-    /// transient.
-    const SETTLING_TIME: T = T::TWO;
-
-    /// Opening of the teeth, and lag of the link, beyond which the link counts as moving to the other flank, over the
-    /// half-gap [-].
-    const FLANK_LEFT_OPENING: T = T::HALF;
+    const THRESHOLDS: InverseThresholds<T> = InverseThresholds::VALUES;
 
     pub fn new(tables: &CompensationTables<T>) -> Self {
         Self {
@@ -114,15 +98,15 @@ impl<T: Real> BacklashInverse<T> {
         }
         let presses = self.share * pressing > T::ONE && self.share.abs() >= T::ONE && self.demand.is_transmitted();
         let share = SlowTask::periods::<T>() * tables.law.back_calculation;
-        let longer = clamp(self.pressed + share, T::ZERO, T::THREE);
+        let longer = clamp(self.pressed + share, T::ZERO, Self::THRESHOLDS.longest_pressed_time);
         self.pressed = if presses { longer } else { T::ZERO };
-        if self.pressed > Self::SETTLING_TIME {
+        if self.pressed > Self::THRESHOLDS.settling_time {
             self.has_settled = true;
             let edge = state.motor_lead - state.flank_shift - self.demand.torque().over(state.stiffness);
             let [drive, back] = &mut self.edges;
             let known = if self.share > T::ZERO { drive } else { back };
             let before = known.unwrap_or(edge);
-            *known = Some(before + Self::EDGE_RATE_RATIO * share * (edge - before));
+            *known = Some(before + Self::THRESHOLDS.edge_rate_ratio * share * (edge - before));
         }
         if let Some(anchor) = self.anchor {
             self.target_shift = self.target_shift(state, anchor);
@@ -143,7 +127,7 @@ impl<T: Real> BacklashInverse<T> {
             [Some(_), Some(back)] => (T::ONE, back),
             [None, None] => return None,
         };
-        let least = Self::FLANK_LEFT_OPENING * state.half_gap;
+        let least = Self::THRESHOLDS.flank_left_opening * state.half_gap;
         (side * (state.motor_lead - state.flank_shift - edge) > least && side * state.error > least).then_some(side)
     }
 
@@ -162,7 +146,7 @@ impl<T: Real> BacklashInverse<T> {
         let back = if back < drive { back } else { drive };
         // While only one edge is known, the inverse is full.
         let both = state.half_gap_known || self.edges.iter().all(Option::is_some);
-        let inverted = if both { T::ONE - Self::UNINVERTED_SHARE } else { T::ONE };
+        let inverted = if both { T::ONE - Self::THRESHOLDS.uninverted_share } else { T::ONE };
         T::HALF * (drive + back + inverted * self.share * (drive - back)) + state.flank_shift
     }
 
@@ -184,7 +168,7 @@ impl<T: Real> BacklashInverse<T> {
         now: &Motion<T>,
         payload_swings: bool,
     ) -> T {
-        let pole = Self::SHIFT_POLE_RATIO * tables.law.rate;
+        let pole = Self::THRESHOLDS.shift_pole_ratio * tables.law.rate;
         self.hold_position(state);
         let [shift, rate] = self.shift;
         let acceleration = pole * (pole * (self.target_shift - shift) - T::TWO * rate);

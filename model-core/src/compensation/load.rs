@@ -1,15 +1,17 @@
-//! Load model: splits the observer's load torque into gravity torque and dry friction (`load_friction`), which predicts the torque after a reversal.
-//! A load that may swing (`payload_swing`) is followed more slowly than it swings.
+//! Load model: splits the observer's load torque into gravity torque and dry friction (`load_friction`), which predicts
+//! the torque after a reversal. A load that may swing (`payload_swing`) is followed more slowly than it swings.
 //!
 //! ```text
-//! (K6)  load torque = L + f dir,   L' = rate
+//! (K6)  load torque = L + f dir,   L' = rate,   Kalman filter for L and f
 //! ```
 //!
-//! Symbols: L = `gravity_torque`, f = `friction`, dir = `direction()`.
+//! Symbols: L = `gravity_torque`, f = `friction`, dir = `direction()`, f dir = `friction_torque()`. L contains every
+//! torque that does not depend on the direction of motion: weight and steady pushes.
 
 use super::load_friction::LoadFrictionFilter;
 use super::loop_state::{LoopState, friction_direction};
 use super::payload_swing::PayloadSwing;
+use super::thresholds::LoadThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
@@ -48,13 +50,7 @@ struct Creep<T: Real> {
 }
 
 impl<T: Real> LoadModel<T> {
-    /// Share of the speed of a creeping link that must exceed the creeping speed before the link counts as moving [-]:
-    /// noise reaches three times the creeping speed.
-    const CREEP_RELEASE_SHARE: T = T::THIRD;
-
-    /// Gain for a load that may swing, over the gain for other loads [-]: time constant of 25 ms, half the period of 20
-    /// Hz.
-    const SWING_GAIN_SHARE: T = T::EIGHTH;
+    const THRESHOLDS: LoadThresholds<T> = LoadThresholds::VALUES;
 
     pub fn new() -> Self {
         Self {
@@ -83,7 +79,7 @@ impl<T: Real> LoadModel<T> {
 
     /// Gain over the gain for a load that does not swing [-].
     fn gain_share(&self) -> T {
-        if self.swing.may_swing() { Self::SWING_GAIN_SHARE } else { T::ONE }
+        if self.swing.may_swing() { Self::THRESHOLDS.swing_gain_share } else { T::ONE }
     }
 
     /// Share and sign of the dry friction at the speed of the link, -1 to 1.
@@ -147,43 +143,59 @@ impl<T: Real> LoadModel<T> {
         acts: bool,
     ) {
         self.estimate_speed(tables, state);
-        // The torque of a weight changes only while the link turns.
-        if self.creeps() {
-            self.rate = T::ZERO;
-        }
-        self.filter.gravity_torque = clamp(
-            self.filter.gravity_torque + tables.clock.period * self.rate,
-            -tables.limits.motor,
-            tables.limits.motor,
-        );
-        // Without the link's position, the integral of plain control takes over.
-        if !state.link_seen {
-            self.filter.gravity_torque -= tables.law.back_calculation * self.filter.gravity_torque;
-        }
+        self.predict(tables, state);
         let torque = estimates.load_torque;
         let known = torque.valid && torque.value.is_finite() && state.link_seen;
-        // A load beyond the motor's limit cannot be carried.
-        let held = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
-        self.peak_load *= tables.switching.transient_left;
-        let push = clamp(torque.value.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
-        if known && push > self.peak_load {
-            self.peak_load = push;
-        }
         let carried = known && !state.teeth_open;
-        self.swing.update(tables, (carried && acts).then_some(held - self.friction_torque()));
+        self.record_peak(tables, known.then_some(torque.value));
+        // A load beyond the motor's limit cannot be carried.
+        let load = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
+        self.swing.update(tables, (carried && acts).then_some(load - self.friction_torque()));
         // While the torque alternates between the limits the load is known with a lag. Friction is then not estimated,
         // because it would absorb the lag.
-        if carried && self.saturation > T::HALF {
-            self.filter.gravity_torque +=
-                self.gain_share() * tables.load.gain * (held - self.filter.gravity_torque - self.friction_torque());
+        if carried && self.saturation > Self::THRESHOLDS.saturation {
+            self.follow(tables, load);
         } else if carried {
-            self.correct(tables, held);
+            self.correct(tables, load);
         } else {
             self.rate *= tables.load.rate_left;
         }
-        let before = self.free_load_torque();
-        self.free_load = (known && !carried).then(|| before + tables.switching.smoothing * (held - before));
-        // Friction alone holds a link at rest without a flank.
+        self.update_free_load(tables, (known && !carried).then_some(load));
+    }
+
+    /// Advances the gravity torque by a period. The torque of a weight changes only while the link turns. Without the
+    /// link's position the gravity torque decays, because the integral of plain control takes over.
+    fn predict(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>) {
+        if self.creeps() {
+            self.rate = T::ZERO;
+        }
+        let limit = tables.limits.motor;
+        self.filter.gravity_torque = clamp(self.filter.gravity_torque + tables.clock.period * self.rate, -limit, limit);
+        if !state.link_seen {
+            self.filter.gravity_torque -= tables.law.back_calculation * self.filter.gravity_torque;
+        }
+    }
+
+    /// Records the largest recent load torque, which decays.
+    fn record_peak(&mut self, tables: &CompensationTables<T>, torque: Option<T>) {
+        self.peak_load *= tables.switching.transient_left;
+        let Some(torque) = torque else { return };
+        let push = clamp(torque.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
+        if push > self.peak_load {
+            self.peak_load = push;
+        }
+    }
+
+    /// Follows a measured load in the gravity torque alone; friction stays.
+    fn follow(&mut self, tables: &CompensationTables<T>, torque: T) {
+        self.filter.gravity_torque +=
+            self.gain_share() * tables.load.gain * (torque - self.filter.gravity_torque - self.friction_torque());
+    }
+
+    /// Smooths the load torque of a link that no flank carries. Friction alone holds such a link at rest.
+    fn update_free_load(&mut self, tables: &CompensationTables<T>, torque: Option<T>) {
+        let last = self.free_load_torque();
+        self.free_load = torque.map(|torque| last + tables.switching.smoothing * (torque - last));
         if let Some(free_load) = self.free_load
             && self.creeps()
         {
@@ -219,12 +231,11 @@ impl<T: Real> LoadModel<T> {
         let [gravity_growth, friction_growth] =
             [gravity_growth, friction_growth].map(|growth| gain_share * gain_share * growth);
         // While the link creeps, a speed within the noise does not count as motion.
-        if creeps(if self.creep.is_some() { Self::CREEP_RELEASE_SHARE * self.speed } else { self.speed }) {
+        if creeps(if self.creep.is_some() { Self::THRESHOLDS.creep_release_share * self.speed } else { self.speed }) {
             let gravity_torque = self.filter.gravity_torque;
             let creep = self.creep.get_or_insert(Creep { gravity_torque, variance: T::ZERO });
             creep.variance += gravity_growth;
-            self.filter.gravity_torque +=
-                self.gain_share() * tables.load.gain * (torque - self.filter.gravity_torque - self.friction_torque());
+            self.follow(tables, torque);
             return;
         }
         let direction = self.direction();

@@ -2,6 +2,7 @@
 //! computed anew every period from the estimates.
 
 use super::set_point::{CommandRef, Position};
+use super::thresholds::EstimateBounds;
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -66,6 +67,8 @@ pub(super) struct LoopState<T: Real> {
 }
 
 impl<T: Real> LoopState<T> {
+    /// Refers the estimates of a period to the link and to the set-point. `encoder_offset` is the offset of the motor
+    /// encoder against the output encoder at the link [rad].
     pub fn new(
         tables: &CompensationTables<T>,
         estimates: &Estimates<T>,
@@ -76,29 +79,25 @@ impl<T: Real> LoopState<T> {
             CommandRef::Position { now, .. } => (now.position, now.speed),
             CommandRef::Impedance(point) => (point.position, point.speed),
         };
-        let contact = Flank::touched(estimates.reported_contact);
-        let half_gap =
-            clamp(tables.gear.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.body.widest_half);
-        let [softest, stiffest] = tables.body.compliances;
-        let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
-        let estimated = &estimates.link_inertia_ratio;
-        let ratio = if estimated.valid { clamp(estimated.value, T::QUARTER, T::FOUR) } else { T::ONE };
-        let at_link = T::HALF * tables.gear.inverse_lever;
         let error = tables.gear.turn * origin.difference(estimates.link.turns, estimates.link.fraction);
         // Motor and link angle count from the zeros of their encoders, which differ by an offset.
         let motor_position = estimates.motor_lead - encoder_offset - error;
-        let bounded_motor_position = if estimates.source == Source::Both && error.is_finite() {
-            clamp(motor_position, -error - half_gap - half_gap, half_gap + half_gap - error)
-        } else {
-            motor_position
-        };
+        let half_gap = half_gap(tables, estimates);
+        let both_encoders = estimates.source == Source::Both;
+        let contact = Flank::touched(estimates.reported_contact);
+        // Shifts and gap coordinate are deflections of both meshes in series: twice the travel of the carrier.
+        let at_link = T::HALF * tables.gear.inverse_lever;
         let mut state = Self {
             error,
             error_rate: speed - estimates.link.speed,
             motor_position,
             motor_lead: estimates.motor_lead,
             encoder_offset,
-            bounded_motor_position,
+            bounded_motor_position: if both_encoders && error.is_finite() {
+                clamp(motor_position, -error - half_gap - half_gap, half_gap + half_gap - error)
+            } else {
+                motor_position
+            },
             motor_speed: tables.gear.link_per_motor * estimates.motor.speed,
             motor_angle: estimates.motor.fraction,
             cogging: estimates.cogging,
@@ -107,8 +106,8 @@ impl<T: Real> LoopState<T> {
             half_gap,
             half_gap_known: estimates.half_backlash_usable,
             mesh_torque: estimates.mesh_torque.value,
-            stiffness,
-            inertia: tables.body.motor_inertia + ratio * tables.body.load_inertia,
+            stiffness: stiffness(tables, estimates),
+            inertia: inertia(tables, estimates),
             losses: [estimates.torque_bias, estimates.motor_friction]
                 .map(|loss| tables.gear.motor_per_link * loss.value),
             transmission_error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
@@ -120,16 +119,17 @@ impl<T: Real> LoopState<T> {
             link_seen: false,
             gap_known: false,
         };
-        let sum = state.error + state.error_rate + state.motor_position + state.motor_speed + state.gap;
-        let sum = sum + state.flank_shift + state.transmission_error_speed + state.losses[0] + state.losses[1];
-        let sum = sum + state.mesh_torque + state.stiffness + state.inertia;
-        state.link_seen = estimates.source == Source::Both && sum.is_finite();
-        // Position mode corrects the error of the link after a crossing to a misplaced flank; impedance mode does not.
-        let flanks_known = matches!(command, CommandRef::Position { .. }) || estimates.half_backlash.valid;
-        let gap_known = estimates.gap.valid && estimates.half_backlash.value.is_finite();
-        let inputs_valid = estimates.contact_valid && gap_known && flanks_known;
-        state.gap_known = state.link_seen && inputs_valid;
+        state.link_seen = both_encoders && state.is_finite();
+        state.gap_known = state.link_seen && gap_is_valid(estimates, command);
         state
+    }
+
+    /// True if all quantities are finite. A sum of quantities of one unit is finite only if each of them is.
+    fn is_finite(&self) -> bool {
+        let angles = self.error + self.motor_position + self.gap + self.flank_shift;
+        let speeds = self.error_rate + self.motor_speed + self.transmission_error_speed;
+        let torques = self.losses[0] + self.losses[1] + self.mesh_torque;
+        [angles, speeds, torques, self.stiffness, self.inertia].iter().all(|quantity| quantity.is_finite())
     }
 
     /// Shift of the flanks after a further angle of the link [rad].
@@ -167,6 +167,33 @@ impl<T: Real> LoopState<T> {
     pub fn damping_torque(&self, tables: &CompensationTables<T>) -> T {
         tables.law.motor_damping * (self.link_speed + self.transmission_error_speed - self.motor_speed)
     }
+}
+
+/// Half of the lost motion, from 0 to the widest that the tables allow [rad].
+fn half_gap<T: Real>(tables: &CompensationTables<T>, estimates: &Estimates<T>) -> T {
+    clamp(tables.gear.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.body.widest_half)
+}
+
+/// Stiffness between motor and link, by the estimated compliance within its bounds [N m/rad].
+fn stiffness<T: Real>(tables: &CompensationTables<T>, estimates: &Estimates<T>) -> T {
+    let [softest, stiffest] = tables.body.compliances;
+    T::ONE.over(clamp(estimates.compliance.value, stiffest, softest))
+}
+
+/// Inertia of motor and link; the link's is the designed one until it is estimated [kg m^2].
+fn inertia<T: Real>(tables: &CompensationTables<T>, estimates: &Estimates<T>) -> T {
+    let [lightest, heaviest] = EstimateBounds::<T>::VALUES.link_inertia_ratio;
+    let estimated = &estimates.link_inertia_ratio;
+    let ratio = if estimated.valid { clamp(estimated.value, lightest, heaviest) } else { T::ONE };
+    tables.body.motor_inertia + ratio * tables.body.load_inertia
+}
+
+/// True if gap and contact are valid. Position mode corrects the error of the link after a crossing to a misplaced
+/// flank; impedance mode does not, and needs a valid half-gap as well.
+fn gap_is_valid<T: Real>(estimates: &Estimates<T>, command: CommandRef<T>) -> bool {
+    let flanks_known = matches!(command, CommandRef::Position { .. }) || estimates.half_backlash.valid;
+    let gap_known = estimates.gap.valid && estimates.half_backlash.value.is_finite();
+    estimates.contact_valid && gap_known && flanks_known
 }
 
 /// Share and sign of the dry friction at a planned speed, -1 to 1: a planned speed has no noise.

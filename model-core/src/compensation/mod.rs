@@ -46,6 +46,7 @@ mod slow_task;
 mod start_prediction;
 mod step;
 pub mod tables;
+mod thresholds;
 mod torque_swing;
 pub mod transitions;
 

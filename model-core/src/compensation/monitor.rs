@@ -1,27 +1,28 @@
-//! Monitor of the compensated loop, (K22) to (K24): detects a loop that hunts, independently of the observer's validity
-//! flags, leaves the joint to plain control, and lets the compensation retry later.
+//! Monitor of the compensated loop: detects a loop that hunts, independently of the observer's validity flags, leaves
+//! the joint to plain control, and lets the compensation retry later.
 //!
-//! Symbols: e = `error` of the link, h = `half` the lost motion, p = `planned` demand of the set-point's own motion
-//! (inertia, friction), d = `demand`, p plus the slow load, s side of the flank in use, n = `unexplained`, m = `mean_square`,
-//! g = `granted_square`, w = `worst_error`, a = `error_per_half`, b = `error_per_demand`, c = `calm_per_half`, t = period/`memory`,
-//! d_min = `least_demand`.
+//! ```text
+//! (K22)  n' = -1/s, or -20/s while E < (0.35 h)^2;   n + 0, 1/8 or 1 per flank change
+//!        explained by the plan (side p > d_min), by the load (side d > d_min or E_0 > (0.35 h)^2), or by neither
+//! (K23)  E' = (e^2 - E)/0.15 s,   E_0' = -E_0/0.15 s
+//! (K24)  hunting:  n > 4,  or  E > (1.5 h + 0.3 |d|/K)^2 + E_0,
+//!        or after a trip  e^2 > (1.5 h + 0.3 |p|/K)^2 + E_0  and  |e| > e_max
+//! ```
 //!
-//! 1. Unexplained flank changes. A flank that is left adds 0 to the count n if s p > d_min at some time while it was in
-//!    use, 1/8 if s d > d_min or g > (c h)^2 at some time, otherwise 1. n decays, fast while the error is small,
-//!    m < (c h)^2, and the link is not pushed hard. The loop hunts if n > `most`.
-//! 2. Mean error beyond the error of plain control. With m' = (e^2 - m)/t the loop hunts if m > (a h + b |d|)^2 + g.
-//!    g is the squared error that the compensation did not cause, by the state at takeover or by jumps of the set-point;
-//!    g decays like m.
-//! 3. After a trip, an error beyond the largest recent error w of plain control: e^2 > (a h + b |p|)^2 + g and |e| > w.
-//!    While plain control acts, w decays with a time constant of 2 s.
+//! | symbol | identifier |
+//! |---|---|
+//! | n, amount added at the next change | `unexplained`, `change_weight` |
+//! | p, d = p + slow load, d_min | `planned`, `demand`, `least_demand` |
+//! | E, E_0 | `mean_square`, `granted_square`: squared error that the compensation did not cause |
+//! | e_max: largest recent error of plain control, decays in 2 s | `worst_error` |
 //!
-//! Impedance mode has no position error: only n decides, with the fast decay.
-//!
-//! A hunting loop is left to plain control (`inverse`; in impedance mode `plain`) for a time that grows by the factor
-//! `longer` with each trip. The time returns to its first value once the compensation has acted for as long.
+//! Impedance mode has no position error: only n decides, with the fast decay. A hunting loop is left to plain control
+//! (`inverse`; in impedance mode `plain`) for a time that grows by the factor `longer` with each trip. The time returns to
+//! its first value once the compensation has acted for as long.
 
 use super::loop_state::LoopState;
 use super::slow_task::SlowTask;
+use super::thresholds::MonitorThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -70,20 +71,7 @@ pub(super) struct MonitorInput<T: Real> {
 }
 
 impl<T: Real> LoopMonitor<T> {
-    /// Change of the error between two judgements beyond the change by its rate, over half the lost motion, that counts
-    /// as a jump of the set-point [-].
-    const SET_POINT_JUMP: T = T::QUARTER;
-
-    /// Time after takeover in which the error is granted [time constants of the loop]: the observer first has to
-    /// estimate the link's speed.
-    const TAKEOVER_TIME: T = T::SIX;
-
-    /// Amount that a flank change explained by the load adds to the count [-]. With the decay of 1/s a load may change
-    /// flanks eight times per second.
-    const LOAD_CHANGE_WEIGHT: T = T::EIGHTH;
-
-    /// Decay rate of the largest error [1/s].
-    const WORST_ERROR_DECAY: T = T::HALF;
+    const THRESHOLDS: MonitorThresholds<T> = MonitorThresholds::VALUES;
 
     pub fn new(tables: &CompensationTables<T>) -> Self {
         Self {
@@ -113,42 +101,29 @@ impl<T: Real> LoopMonitor<T> {
         &mut self,
         tables: &CompensationTables<T>,
         state: &LoopState<T>,
-        watched: &MonitorInput<T>,
+        input: &MonitorInput<T>,
         acting: Option<Flank>,
     ) {
-        let (table, period) = (&tables.watch, SlowTask::periods::<T>() * tables.clock.period);
-        let [first, second] = &mut self.load;
-        let share = SlowTask::periods::<T>() * table.smoothing;
-        *first += share * (watched.load - *first);
-        *second += share * (*first - *second);
-        let demand = watched.planned + *second;
-        if !demand.is_finite() {
-            self.load = [T::ZERO; 2];
-            return;
-        }
-        if acting.is_none() && watched.has_error {
-            let faded = self.worst_error - period * Self::WORST_ERROR_DECAY * self.worst_error;
+        let period = SlowTask::periods::<T>() * tables.clock.period;
+        let Some(demand) = self.demand(tables, input) else { return };
+        if acting.is_none() && input.has_error {
+            let decayed = self.worst_error - period * Self::THRESHOLDS.worst_error_decay * self.worst_error;
             let error = state.error.abs();
-            self.worst_error = if error > faded { error } else { faded };
+            self.worst_error = if error > decayed { error } else { decayed };
         }
         if self.remaining_trip > T::ZERO {
             self.remaining_trip = decrease(self.remaining_trip, period);
             return;
         }
-        if acting.is_none() || !watched.has_error {
+        if acting.is_none() || !input.has_error {
             // The error at takeover was left by another law.
             (self.mean_square, self.last_error, self.judged_time) = (T::ZERO, None, T::ZERO);
-        } else if watched.external_impact {
+        } else if input.external_impact {
             self.last_error = None;
         } else {
             self.update_mean_square(tables, state);
         }
-        let calm = table.calm_per_half * state.half_gap;
-        let [leak, calm_leak] = table.leaks;
-        // A hunting loop also pushes the link hard, so a pushed link is never calm.
-        let is_calm = !watched.has_error || !watched.external_impact && self.mean_square < calm * calm;
-        let leak = if is_calm { calm_leak } else { leak };
-        self.unexplained = decrease(self.unexplained, period * leak);
+        self.decay_count(tables, state, input, period);
         let Some(flank) = acting else {
             self.flank = None;
             return;
@@ -156,35 +131,86 @@ impl<T: Real> LoopMonitor<T> {
         if self.acting_time < self.next_retry_time {
             self.acting_time += period;
         } else {
-            self.next_retry_time = table.first_away;
+            self.next_retry_time = tables.watch.first_away;
         }
+        self.count_change(tables, state, flank, input.planned, demand);
+        if self.hunts(tables, state, input, demand) {
+            self.trip(tables);
+        }
+    }
+
+    /// Demand of the set-point and the slow load; `None` if not finite.
+    fn demand(&mut self, tables: &CompensationTables<T>, input: &MonitorInput<T>) -> Option<T> {
+        let share = SlowTask::periods::<T>() * tables.watch.smoothing;
+        let [first, second] = &mut self.load;
+        *first += share * (input.load - *first);
+        *second += share * (*first - *second);
+        let demand = input.planned + *second;
+        if !demand.is_finite() {
+            self.load = [T::ZERO; 2];
+            return None;
+        }
+        Some(demand)
+    }
+
+    /// RMS error that is small [rad].
+    fn calm_error(tables: &CompensationTables<T>, state: &LoopState<T>) -> T {
+        tables.watch.calm_per_half * state.half_gap
+    }
+
+    /// Lets the count of unexplained flank changes decay (K22), fast while the error is small. A hunting loop also pushes
+    /// the link hard, so a pushed link is never calm.
+    fn decay_count(
+        &mut self,
+        tables: &CompensationTables<T>,
+        state: &LoopState<T>,
+        input: &MonitorInput<T>,
+        period: T,
+    ) {
+        let calm = Self::calm_error(tables, state);
+        let [leak, calm_leak] = tables.watch.leaks;
+        let is_calm = !input.has_error || !input.external_impact && self.mean_square < calm * calm;
+        self.unexplained = decrease(self.unexplained, period * if is_calm { calm_leak } else { leak });
+    }
+
+    /// Counts a change of the flank (K22), and notes what explains the flank in use. Catching a link that was moved from
+    /// outside changes flanks rightly, and so does a load. But hunting also looks like a load.
+    fn count_change(
+        &mut self,
+        tables: &CompensationTables<T>,
+        state: &LoopState<T>,
+        flank: Flank,
+        planned: T,
+        demand: T,
+    ) {
         if self.flank != Some(flank) {
             if self.flank.is_some() {
                 self.unexplained += self.change_weight;
             }
             (self.flank, self.change_weight) = (Some(flank), T::ONE);
         }
-        // Catching a link that was moved from outside changes flanks rightly, and so does a load. But hunting also
-        // looks like a load.
-        let asks = |demand: T| flank.sign::<T>() * demand > table.least_demand;
-        if asks(watched.planned) {
+        let calm = Self::calm_error(tables, state);
+        let presses = |torque: T| flank.sign::<T>() * torque > tables.watch.least_demand;
+        if presses(planned) {
             self.change_weight = T::ZERO;
-        } else if asks(demand) || self.granted_square > calm * calm {
-            self.change_weight = clamp(self.change_weight, T::ZERO, Self::LOAD_CHANGE_WEIGHT);
+        } else if presses(demand) || self.granted_square > calm * calm {
+            self.change_weight = clamp(self.change_weight, T::ZERO, Self::THRESHOLDS.load_change_weight);
         }
-        let bound = |demand: T| {
-            let bound = table.error_per_half * state.half_gap + table.error_per_demand * demand.abs();
+    }
+
+    /// True if the loop hunts (K24). After a trip the compensation must also be better than plain control.
+    fn hunts(&self, tables: &CompensationTables<T>, state: &LoopState<T>, input: &MonitorInput<T>, demand: T) -> bool {
+        let table = &tables.watch;
+        let bound = |torque: T| {
+            let bound = table.error_per_half * state.half_gap + table.error_per_demand * torque.abs();
             bound * bound + self.granted_square
         };
-        let error = state.error * state.error;
-        // After a trip the compensation must be better than plain control.
-        let is_worse = self.next_retry_time > table.first_away
-            && watched.has_error
-            && error > bound(watched.planned)
-            && error > self.worst_error * self.worst_error;
-        if self.unexplained > table.most || self.mean_square > bound(demand) || is_worse {
-            self.trip(tables);
-        }
+        let square = state.error * state.error;
+        let is_worse_than_plain = self.next_retry_time > table.first_away
+            && input.has_error
+            && square > bound(input.planned)
+            && square > self.worst_error * self.worst_error;
+        self.unexplained > table.most || self.mean_square > bound(demand) || is_worse_than_plain
     }
 
     /// Updates the mean square of the error, and the grant if the error has another cause.
@@ -197,10 +223,10 @@ impl<T: Real> LoopMonitor<T> {
             .last_error
             .replace(state.error)
             .map_or(T::ZERO, |last_error| (state.error - last_error - period * state.error_rate).abs());
-        if jump > Self::SET_POINT_JUMP * state.half_gap {
+        if jump > Self::THRESHOLDS.set_point_jump * state.half_gap {
             self.granted_square += jump * jump;
         }
-        if self.judged_time < Self::TAKEOVER_TIME {
+        if self.judged_time < Self::THRESHOLDS.takeover_time {
             self.judged_time += SlowTask::periods::<T>() * tables.law.back_calculation;
             let found = state.error.abs() + T::TWO * state.error_rate.abs().over(tables.law.rate);
             let found = found * found;

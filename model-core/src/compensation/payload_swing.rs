@@ -9,6 +9,7 @@
 //! measured torques. The load changes sides when c - m < -M after c - m > M, or the reverse. Three changes, each within an eighth of a
 //! second of the last, are a swing.
 
+use super::thresholds::PayloadSwingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
@@ -29,16 +30,7 @@ pub(super) struct PayloadSwing<T: Real> {
 }
 
 impl<T: Real> PayloadSwing<T> {
-    /// Changes of the side that make a swing [-]: a step with its transient makes one or two.
-    const CHANGES_OF_A_SWING: T = T::THREE;
-
-    /// Half the period of the slowest swing [s]: modes of payloads are above 8 Hz, motions and loads by people below 4
-    /// Hz.
-    const LONGEST_HALF_PERIOD: T = T::EIGHTH;
-
-    /// Time without a swing after which the load no longer counts as swinging; also the time at the start during which
-    /// it may swing [s].
-    const SWING_MEMORY: T = T::ONE;
+    const THRESHOLDS: PayloadSwingThresholds<T> = PayloadSwingThresholds::VALUES;
 
     pub fn new() -> Self {
         Self {
@@ -46,7 +38,7 @@ impl<T: Real> PayloadSwing<T> {
             side: T::ZERO,
             time_since_change: T::ZERO,
             changes: T::ZERO,
-            remaining_time: Self::SWING_MEMORY,
+            remaining_time: Self::THRESHOLDS.memory,
         }
     }
 
@@ -57,7 +49,7 @@ impl<T: Real> PayloadSwing<T> {
 
     /// True if a swing was detected.
     pub fn swings(&self) -> bool {
-        self.may_swing() && self.changes >= Self::CHANGES_OF_A_SWING
+        self.may_swing() && self.changes >= Self::THRESHOLDS.changes
     }
 
     /// Updates the detector by the load of a period [N m]; `None` without a measurement.
@@ -75,12 +67,15 @@ impl<T: Real> PayloadSwing<T> {
         }
         let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
         if side * self.side < T::ZERO {
-            self.changes =
-                if self.time_since_change < Self::LONGEST_HALF_PERIOD { self.changes + T::ONE } else { T::ZERO };
+            self.changes = if self.time_since_change < Self::THRESHOLDS.longest_half_period {
+                self.changes + T::ONE
+            } else {
+                T::ZERO
+            };
             self.time_since_change = T::ZERO;
-            if self.changes >= Self::CHANGES_OF_A_SWING {
-                self.changes = Self::CHANGES_OF_A_SWING;
-                self.remaining_time = Self::SWING_MEMORY;
+            if self.changes >= Self::THRESHOLDS.changes {
+                self.changes = Self::THRESHOLDS.changes;
+                self.remaining_time = Self::THRESHOLDS.memory;
             }
         }
         self.side = side;

@@ -9,6 +9,7 @@ use super::integral::Integral;
 use super::load::LoadModel;
 use super::loop_state::LoopState;
 use super::set_point::{ImpedancePoint, Motion};
+use super::thresholds::PlainThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -25,12 +26,7 @@ pub(super) struct PlainControl<T: Real> {
 }
 
 impl<T: Real> PlainControl<T> {
-    /// Speed of the link against the set-point beyond which the flank in use gives no distance of motor and link, as
-    /// travel in a time constant of the loop over the half-gap [-].
-    const PUSHED_LINK_TRAVEL: T = T::QUARTER;
-
-    /// Smoothing rate of motor less link, over the rate of the loop [-].
-    const LEAD_SMOOTHING: T = T::QUARTER;
+    const THRESHOLDS: PlainThresholds<T> = PlainThresholds::VALUES;
 
     pub fn new() -> Self {
         Self { integral: Integral::new(), motor_lead: T::ZERO, expected_flank: None }
@@ -62,7 +58,7 @@ impl<T: Real> PlainControl<T> {
         // answer.
         let (on_motor, on_link, known) = if load.external_impact(tables) {
             let on_motor = swinging_motor_damping(tables.law.motor_damping);
-            (on_motor, T::HALF * (tables.law.damping - on_motor), T::ZERO)
+            (on_motor, Self::THRESHOLDS.pushed_link_damping * (tables.law.damping - on_motor), T::ZERO)
         } else {
             (tables.law.damping, T::ZERO, load.gravity_torque() + drag)
         };
@@ -88,13 +84,13 @@ impl<T: Real> PlainControl<T> {
     /// seen, other laws control: the integral decays to be ready, and the flank in use gives the distance of motor and
     /// link.
     pub fn update(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>, cut: T) {
-        let slowly = Self::LEAD_SMOOTHING * tables.law.back_calculation;
+        let slowly = Self::THRESHOLDS.lead_smoothing * tables.law.back_calculation;
         let (towards, part) = if state.link_seen {
             self.expected_flank = None;
             self.integral.decay_toward(tables, T::ZERO);
             // Teeth that may be open, and a link that moves fast against its set-point, give no distance.
             let link_pushed = tables.clock.period * state.error_rate.abs()
-                > Self::PUSHED_LINK_TRAVEL * tables.law.back_calculation * state.half_gap;
+                > Self::THRESHOLDS.pushed_link_travel * tables.law.back_calculation * state.half_gap;
             let lead_unknown = state.contact.is_none() || link_pushed;
             let towards = if lead_unknown { self.motor_lead } else { state.bounded_motor_lead() };
             (towards, slowly)
@@ -114,5 +110,5 @@ impl<T: Real> PlainControl<T> {
 
 /// Damper on the motor [N m s/rad]: larger than D_m of the compensation, whose damper acts against the link.
 pub(super) fn swinging_motor_damping<T: Real>(motor_damping: T) -> T {
-    (T::ONE + T::HALF) * motor_damping
+    (T::ONE + PlainThresholds::<T>::VALUES.damping_growth) * motor_damping
 }

@@ -1,16 +1,22 @@
-//! Control law of position mode: spring and damper on the link, damper on the motor, feed-forward of acceleration and load. The load
-//! estimate replaces an integral.
+//! Control law of position mode: spring and damper on the link, damper on the motor, feed-forward of acceleration and
+//! load. The load estimate replaces an integral.
 //!
 //! ```text
-//! (K1)  torque = J a + L + f dir + losses + K e + D (v - w_l) + D_m (w_l + v_e - w_m)
-//! (K4)  demand(time) = J_l a + L + f dir + K e + D (v - w_l), extrapolated by time
+//! (K1)   torque = J a + L + f dir + losses + K e + D (v - w_l) + D_m (w_l + v_e - w_m)
+//! (K4)   demand(time) = J_l a + L + f dir + K e + D (v - w_l), extrapolated by time
+//! (K15)  deadband: 0.05 h, reached in 1 s;   2 deadband + 0.05 h, at most h/2, at each flank change within 15/w
 //! ```
 //!
-//! Symbols: v, a = `now.speed`, `now.acceleration`; L = `load.gravity_torque()`; f dir = `load.planned_friction()`; losses = `state.loss_torque()`;
-//! K e = `spring`; D = `law.damping`; v - w_l = `state.error_rate`; D_m term = `state.damping_torque()`; measured part of the
-//! demand = `measured_demand`. (K15) is `update_deadband`.
+//! | symbol | identifier |
+//! |---|---|
+//! | J a + L + f dir | `feedforward` |
+//! | v, a | `now.speed`, `now.acceleration`; a of an early braked link: `approach.acceleration` |
+//! | L, f dir | `load.gravity_torque()`, `load.planned_friction()` |
+//! | e, K e, D (v - w_l) | `feedback.error`, `feedback.spring`, `feedback.damper` |
+//! | D_m term, losses | `state.damping_torque()`, `state.loss_torque()` |
+//! | measured part of the demand | `measured_demand` |
 
-use super::braking::{BrakingLimit, SetPointMotion, TrackingError};
+use super::braking::{Approach, BrakingLimit, SetPointMotion, TrackingError};
 use super::control_demand::ControlDemand;
 use super::easing::Easing;
 use super::limit::{limit_mesh_torque, mesh_torque, mesh_torque_limit};
@@ -18,14 +24,11 @@ use super::load::LoadModel;
 use super::loop_state::LoopState;
 use super::set_point::Motion;
 use super::start_prediction::StartPrediction;
+use super::thresholds::PositionThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
-
-/// Smoothing rate of the set-point's jerk over the smoothing rate of measured torque: planners send coarse steps, but
-/// no noise.
-const JERK_SMOOTHING_RATIO: i32 = 8;
 
 /// State of position mode.
 #[derive(Debug, Clone)]
@@ -52,15 +55,43 @@ pub(super) struct PositionLaw<T: Real> {
     peak_acceleration: T,
 }
 
-impl<T: Real> PositionLaw<T> {
-    /// Rate at which the first dead band opens, over its size [1/s]: slow against a load that passes through zero, fast
-    /// against an integral that winds up until the motor breaks loose from its friction.
-    const DEADBAND_OPENING_RATE: T = T::ONE;
+/// Changes of the set-point within a time: by the preview or, without a preview, by the jerk.
+#[derive(Debug, Clone, Copy)]
+struct SetPointTrend<T: Real> {
+    /// Change of the speed [rad/s]; zero without a preview.
+    speed: T,
+    /// Change of the acceleration [rad/s^2].
+    acceleration: T,
+    /// Time within which the set-point changes, never zero [s].
+    time: T,
+    /// True if the changes are known by a preview.
+    previewed: bool,
+}
 
-    /// Torque of the law beyond the motor's limit while the link is pushed hard, over that limit [-]: the excess
-    /// outweighs part of the damper between motor and link, so that the link is pushed back sooner at the cost of the
-    /// teeth.
-    const IMPACT_EXTRA_TORQUE: T = T::QUARTER;
+/// Torques of spring and damper on the link.
+#[derive(Debug, Clone, Copy)]
+struct Feedback<T: Real> {
+    /// Set-point less link, beyond the dead band [rad].
+    error: T,
+    /// Approach that replaces the linear law, if the motor could not brake the link otherwise.
+    approach: Option<Approach<T>>,
+    /// Torque of the spring [N m].
+    spring: T,
+    /// Torque of the damper [N m].
+    damper: T,
+}
+
+/// Torque of the law, and the part of it that is lost between motor and load.
+#[derive(Debug, Clone, Copy)]
+struct LawTorque<T: Real> {
+    /// Torque of the motor [N m].
+    motor: T,
+    /// Friction, bias and gear losses in `motor` [N m].
+    losses: T,
+}
+
+impl<T: Real> PositionLaw<T> {
+    const THRESHOLDS: PositionThresholds<T> = PositionThresholds::VALUES;
 
     pub fn new() -> Self {
         Self {
@@ -85,6 +116,9 @@ impl<T: Real> PositionLaw<T> {
         beyond(state.error, self.deadband)
     }
 
+    /// Computes the demand of a set-point. `ahead` is the set-point after [`CrossingTable::lead`], if known.
+    ///
+    /// [`CrossingTable::lead`]: crate::compensation::tables::CrossingTable::lead
     pub fn demand(
         &mut self,
         tables: &CompensationTables<T>,
@@ -93,139 +127,241 @@ impl<T: Real> PositionLaw<T> {
         now: &Motion<T>,
         ahead: Option<&Motion<T>>,
     ) -> ControlDemand<T> {
-        let (asked, known) = self.trajectory(tables, now, ahead);
-        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && (ahead.is_none() || asked == [T::ZERO; 2]);
-        let let_be = if rests { self.deadband } else { T::ZERO };
-        let hardest = if rests { T::ZERO } else { self.peak_acceleration };
-        let asks = now.acceleration.abs();
-        self.peak_acceleration = if asks > hardest { asks } else { hardest };
-
-        let error = beyond(state.error, let_be);
-        let soon = now.acceleration + tables.crossing.lead.over(known) * asked[1];
-        let soon = if ahead.is_some() { soon } else { clamp(soon, -self.peak_acceleration, self.peak_acceleration) };
-        let set_point = SetPointMotion { speed: now.speed, acceleration: now.acceleration, ahead: soon };
+        let trend = self.trend(tables, now, ahead);
+        let rests = now.speed == T::ZERO
+            && now.acceleration == T::ZERO
+            && (!trend.previewed || [trend.speed, trend.acceleration] == [T::ZERO; 2]);
+        let set_point = self.motion_ahead(tables, now, &trend, rests);
         let braking = BrakingLimit::new(tables, load, state);
-        let approach = braking.approach(error, &set_point);
-        let spring = approach.map_or(tables.law.position * error, |approach| tables.law.damping * approach.closing);
-        let acceleration = approach.map_or(now.acceleration, |approach| approach.acceleration);
-        let stands = self.start.friction_holds(tables);
-        let useful = (tables.body.load_inertia + tables.body.motor_inertia) * acceleration
-            + self.easing.step(tables, load, state, rests, stands) * load.gravity_torque()
-            + load.planned_friction(tables, now.speed)
-            + spring
-            + tables.law.damping * state.error_rate;
-        // Torque beyond the limits must not outweigh the damper.
-        let all = mesh_torque(tables, load.free_load_torque(), useful);
-        let allowed = mesh_torque_limit(tables, useful);
-        let external_impact = load.external_impact(tables);
-        let most = if external_impact { all.abs() } else { allowed };
-        let passed = clamp(all, -most, most);
-        let useful = useful - tables.body.inverse_load_share * (all - passed);
-        let asked_for = useful + state.loss_torque(tables, now.speed, passed);
-        let most = if external_impact {
-            (T::ONE + Self::IMPACT_EXTRA_TORQUE) * tables.limits.motor
-        } else {
-            tables.limits.motor
-        };
-        let law = clamp(asked_for, -most, most) + state.damping_torque(tables);
-        let lost = state.loss_torque(tables, state.link_speed, passed);
-        let law = limit_mesh_torque(tables, load, state, law - lost, allowed) + lost;
-        let level = load.gravity_torque()
-            + (load.friction_torque() - load.planned_friction(tables, now.speed))
-            + spring
-            + tables.law.damping * state.error_rate;
-        // Changes that are large against the noise are followed faster.
-        self.measured_demand += tables.clock.period * load.gravity_rate();
-        let change = level - self.measured_demand;
-        let weight = tables.switching.inverse_step * change;
-        // With a preview the planned demand is known early, so the measured demand is smoothed longer: teeth that
-        // oscillate about a small torque at the mesh frequency must not make the motor leave at a peak and return at
-        // once.
-        let smoothing =
-            if ahead.is_some() { (T::ONE - T::THIRD) * tables.switching.smoothing } else { tables.switching.smoothing };
-        self.measured_demand +=
-            clamp(smoothing * clamp(weight * weight, T::ONE, tables.clock.rate), T::ZERO, T::HALF) * change;
-        let planned = |time: T| {
-            let part = time.over(known);
-            let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
-            let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
-            tables.body.load_inertia * (now.acceleration + part * asked[1]) + load.planned_friction(tables, speed)
-        };
-        let level = self.measured_demand;
-        let rate = load.gravity_rate();
-        let tracking = approach.map(|_| {
-            let torque = clamp(law - lost, -tables.limits.motor, tables.limits.motor);
-            let acceleration = now.acceleration - braking.acceleration(tables, load, state, torque);
-            TrackingError { error, rate: state.error_rate, acceleration }
+        let feedback = self.feedback(tables, state, &braking, &set_point, rests);
+
+        let acceleration = feedback.approach.map_or(now.acceleration, |approach| approach.acceleration);
+        let feedforward = self.feedforward(tables, load, state, acceleration, now.speed, rests);
+        let useful = feedforward + feedback.spring + feedback.damper;
+        let torque = law_torque(tables, load, state, now.speed, useful);
+
+        self.follow_measured_demand(tables, load, now.speed, &feedback, trend.previewed);
+        let tracking = feedback.approach.map(|_| {
+            let useful = clamp(torque.motor - torque.losses, -tables.limits.motor, tables.limits.motor);
+            let acceleration = now.acceleration - braking.acceleration(tables, load, state, useful);
+            TrackingError { error: feedback.error, rate: state.error_rate, acceleration }
         });
         let demand = |time: T| match &tracking {
-            None => planned(time) + level + time * rate,
+            None => planned_demand(tables, load, now, &trend, time) + self.measured_demand + time * load.gravity_rate(),
             Some(tracking) => braking.demand(tables, load, tracking, &set_point, time),
         };
+        let demand = ControlDemand::new(tables, load, state, torque.motor, demand, false);
+
         // A joint that carries a load is not idle: the loaded flank is kept.
-        let idles = rests && beyond(load.gravity_torque(), tables.switching.measured) == T::ZERO;
-        let direction = if now.speed == T::ZERO { now.acceleration } else { now.speed };
-        let likely = self.start.step(tables, state, direction, rests);
-        let expects = if ahead.is_none() { sign::<T>(likely) * load.start_torque(tables) } else { T::ZERO };
-        let brakes_early = approach.is_some();
-        let needs_no_flank = idles && self.start.friction_holds(tables) && expects == T::ZERO && error == T::ZERO;
-        let intent = ControlDemand {
-            rests_unloaded: idles,
+        let rests_unloaded = rests && beyond(load.gravity_torque(), tables.switching.measured) == T::ZERO;
+        let expected_start_torque = self.expected_start_torque(tables, load, state, now, &trend, rests);
+        let requested = beyond(demand.after_crossing, tables.switching.measured * tables.switching.least);
+        self.update_deadband(tables, rests, rests_unloaded, requested, state.half_gap);
+        ControlDemand {
+            rests_unloaded,
             rests,
-            needs_no_flank,
-            external_impact,
-            brakes_early,
-            expected_start_torque: expects,
-            ..ControlDemand::new(tables, load, state, law, demand, false)
-        };
-        let surely = beyond(intent.after_crossing, tables.switching.measured * tables.switching.least);
-        self.update_deadband(tables, rests, idles, surely, state.half_gap);
-        intent
+            needs_no_flank: rests_unloaded
+                && self.start.friction_holds(tables)
+                && expected_start_torque == T::ZERO
+                && feedback.error == T::ZERO,
+            external_impact: load.external_impact(tables),
+            brakes_early: feedback.approach.is_some(),
+            expected_start_torque,
+            ..demand
+        }
     }
 
-    /// Changes of the set-point's speed and acceleration within a time, and that time, which is never zero. The preview
-    /// gives the changes; without a preview, the jerk.
-    fn trajectory(
+    /// Changes of the set-point: by the preview or, without a preview, by the smoothed jerk.
+    fn trend(
         &mut self,
         tables: &CompensationTables<T>,
         now: &Motion<T>,
         ahead: Option<&Motion<T>>,
-    ) -> ([T; 2], T) {
-        let before = self.last_acceleration.replace(now.acceleration);
-        match ahead {
-            Some(ahead) => ([ahead.speed - now.speed, ahead.acceleration - now.acceleration], tables.crossing.lead),
-            None => {
-                let by = before.map_or(T::ZERO, |before| now.acceleration - before);
-                self.acceleration_step +=
-                    T::from_i32(JERK_SMOOTHING_RATIO) * tables.switching.smoothing * (by - self.acceleration_step);
-                ([T::ZERO, self.acceleration_step], tables.clock.period)
-            }
+    ) -> SetPointTrend<T> {
+        let last = self.last_acceleration.replace(now.acceleration);
+        if let Some(ahead) = ahead {
+            return SetPointTrend {
+                speed: ahead.speed - now.speed,
+                acceleration: ahead.acceleration - now.acceleration,
+                time: tables.crossing.lead,
+                previewed: true,
+            };
         }
+        let step = last.map_or(T::ZERO, |last| now.acceleration - last);
+        self.acceleration_step += T::from_i32(Self::THRESHOLDS.jerk_smoothing_ratio)
+            * tables.switching.smoothing
+            * (step - self.acceleration_step);
+        SetPointTrend {
+            speed: T::ZERO,
+            acceleration: self.acceleration_step,
+            time: tables.clock.period,
+            previewed: false,
+        }
+    }
+
+    /// Motion of the set-point, now and at the end of a crossing. Without a preview the acceleration stays within the
+    /// largest acceleration since the last rest.
+    fn motion_ahead(
+        &mut self,
+        tables: &CompensationTables<T>,
+        now: &Motion<T>,
+        trend: &SetPointTrend<T>,
+        rests: bool,
+    ) -> SetPointMotion<T> {
+        let peak = if rests { T::ZERO } else { self.peak_acceleration };
+        let present = now.acceleration.abs();
+        self.peak_acceleration = if present > peak { present } else { peak };
+        let ahead = now.acceleration + tables.crossing.lead.over(trend.time) * trend.acceleration;
+        let ahead = if trend.previewed { ahead } else { clamp(ahead, -self.peak_acceleration, self.peak_acceleration) };
+        SetPointMotion { speed: now.speed, acceleration: now.acceleration, ahead }
+    }
+
+    /// Spring and damper on the link; the spring closes no faster than the motor can brake (K12).
+    fn feedback(
+        &self,
+        tables: &CompensationTables<T>,
+        state: &LoopState<T>,
+        braking: &BrakingLimit<T>,
+        set_point: &SetPointMotion<T>,
+        rests: bool,
+    ) -> Feedback<T> {
+        let error = beyond(state.error, if rests { self.deadband } else { T::ZERO });
+        let approach = braking.approach(error, set_point);
+        let spring = approach.map_or(tables.law.position * error, |approach| tables.law.damping * approach.closing);
+        Feedback { error, approach, spring, damper: tables.law.damping * state.error_rate }
+    }
+
+    /// Torque of acceleration and load before losses [N m].
+    fn feedforward(
+        &mut self,
+        tables: &CompensationTables<T>,
+        load: &LoadModel<T>,
+        state: &LoopState<T>,
+        acceleration: T,
+        speed: T,
+        rests: bool,
+    ) -> T {
+        let friction_holds = self.start.friction_holds(tables);
+        (tables.body.load_inertia + tables.body.motor_inertia) * acceleration
+            + self.easing.step(tables, load, state, rests, friction_holds) * load.gravity_torque()
+            + load.planned_friction(tables, speed)
+    }
+
+    /// Smooths the measured part of the demand. Changes that are large against the noise are followed faster. With a
+    /// preview the planned demand is known early, so the measured demand is smoothed longer: teeth that oscillate about a
+    /// small torque at the mesh frequency must not make the motor leave at a peak and return at once.
+    fn follow_measured_demand(
+        &mut self,
+        tables: &CompensationTables<T>,
+        load: &LoadModel<T>,
+        speed: T,
+        feedback: &Feedback<T>,
+        previewed: bool,
+    ) {
+        let measured = load.gravity_torque()
+            + (load.friction_torque() - load.planned_friction(tables, speed))
+            + feedback.spring
+            + feedback.damper;
+        self.measured_demand += tables.clock.period * load.gravity_rate();
+        let change = measured - self.measured_demand;
+        let relative = tables.switching.inverse_step * change;
+        let smoothing = if previewed {
+            (T::ONE - Self::THRESHOLDS.preview_smoothing_cut) * tables.switching.smoothing
+        } else {
+            tables.switching.smoothing
+        };
+        let faster = clamp(relative * relative, T::ONE, tables.clock.rate);
+        self.measured_demand += clamp(smoothing * faster, T::ZERO, Self::THRESHOLDS.max_smoothing) * change;
+    }
+
+    /// Predicted torque of the next start of a joint at rest, without a preview [N m].
+    fn expected_start_torque(
+        &mut self,
+        tables: &CompensationTables<T>,
+        load: &LoadModel<T>,
+        state: &LoopState<T>,
+        now: &Motion<T>,
+        trend: &SetPointTrend<T>,
+        rests: bool,
+    ) -> T {
+        let direction = if now.speed == T::ZERO { now.acceleration } else { now.speed };
+        let flank = self.start.step(tables, state, direction, rests);
+        if trend.previewed { T::ZERO } else { sign::<T>(flank) * load.start_torque(tables) }
     }
 
     /// Opens the first dead band while a joint rests without a load (K15): an error treated as friction lasts for
     /// seconds, and correcting it later costs a crossing. A request for the opposite flank soon after the last request
     /// widens the dead band, because only a hunting loop causes such requests, no load. The dead band decays slowly,
     /// and closes at once when the joint is to move.
-    fn update_deadband(&mut self, tables: &CompensationTables<T>, rests: bool, idles: bool, demand: T, half: T) {
+    fn update_deadband(
+        &mut self,
+        tables: &CompensationTables<T>,
+        rests: bool,
+        rests_unloaded: bool,
+        requested: T,
+        half_gap: T,
+    ) {
         self.time_since_request = clamp(self.time_since_request + tables.clock.period, T::ZERO, tables.rest.hunting);
         if !rests {
             self.deadband = T::ZERO;
             self.requested_flank = None;
             return;
         }
-        let first = tables.rest.first_deadband * half;
-        let opened = self.deadband + Self::DEADBAND_OPENING_RATE * tables.clock.period * first;
-        let forgiven = tables.rest.deadband_left * self.deadband;
-        self.deadband = if idles { clamp(first, forgiven, opened) } else { T::ZERO };
-        let asks = Flank::towards(demand);
-        if asks.is_some_and(|flank| self.requested_flank == Some(flank.opposite())) {
+        let first = tables.rest.first_deadband * half_gap;
+        let opened = self.deadband + Self::THRESHOLDS.deadband_opening_rate * tables.clock.period * first;
+        let decayed = tables.rest.deadband_left * self.deadband;
+        self.deadband = if rests_unloaded { clamp(first, decayed, opened) } else { T::ZERO };
+        let flank = Flank::towards(requested);
+        if flank.is_some_and(|flank| self.requested_flank == Some(flank.opposite())) {
             if self.time_since_request < tables.rest.hunting {
                 let grown = self.deadband + self.deadband + first;
-                self.deadband = clamp(grown, T::ZERO, tables.rest.largest_deadband * half);
+                self.deadband = clamp(grown, T::ZERO, tables.rest.largest_deadband * half_gap);
             }
             self.time_since_request = T::ZERO;
         }
-        self.requested_flank = asks.or(self.requested_flank);
+        self.requested_flank = flank.or(self.requested_flank);
     }
+}
+
+/// Torque of the law for a torque after losses, limited by motor and teeth (K11). Torque beyond the limits must not
+/// outweigh the damper on the motor, which is added after the limits.
+fn law_torque<T: Real>(
+    tables: &CompensationTables<T>,
+    load: &LoadModel<T>,
+    state: &LoopState<T>,
+    speed: T,
+    useful: T,
+) -> LawTorque<T> {
+    let unlimited = mesh_torque(tables, load.free_load_torque(), useful);
+    let teeth_limit = mesh_torque_limit(tables, useful);
+    let external_impact = load.external_impact(tables);
+    let bound = if external_impact { unlimited.abs() } else { teeth_limit };
+    let transmitted = clamp(unlimited, -bound, bound);
+    let useful = useful - tables.body.inverse_load_share * (unlimited - transmitted);
+    let motor_limit = if external_impact {
+        (T::ONE + PositionLaw::<T>::THRESHOLDS.impact_excess_torque) * tables.limits.motor
+    } else {
+        tables.limits.motor
+    };
+    let planned = useful + state.loss_torque(tables, speed, transmitted);
+    let damped = clamp(planned, -motor_limit, motor_limit) + state.damping_torque(tables);
+    let losses = state.loss_torque(tables, state.link_speed, transmitted);
+    LawTorque { motor: limit_mesh_torque(tables, load, state, damped - losses, teeth_limit) + losses, losses }
+}
+
+/// Planned part of the demand after a time (K4) [N m].
+fn planned_demand<T: Real>(
+    tables: &CompensationTables<T>,
+    load: &LoadModel<T>,
+    now: &Motion<T>,
+    trend: &SetPointTrend<T>,
+    time: T,
+) -> T {
+    let part = time.over(trend.time);
+    let speed = if trend.previewed {
+        now.speed + part * trend.speed
+    } else {
+        now.speed + time * (now.acceleration + T::HALF * part * trend.acceleration)
+    };
+    tables.body.load_inertia * (now.acceleration + part * trend.acceleration) + load.planned_friction(tables, speed)
 }

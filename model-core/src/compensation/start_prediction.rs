@@ -2,6 +2,7 @@
 //! start did, because most unforeseen motions go to and fro or on and on.
 
 use super::loop_state::LoopState;
+use super::thresholds::StartThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -24,12 +25,7 @@ pub(super) struct StartPrediction<T: Real> {
 }
 
 impl<T: Real> StartPrediction<T> {
-    /// Time of standing still after which friction holds the link, over `rest.hunting` [-].
-    const STANDSTILL_TIME: T = T::QUARTER;
-
-    /// Travel below which the link stands still, over the half-gap [-]; the speed is too coarse, because it flickers
-    /// with the last count of the encoder.
-    const STANDSTILL_TRAVEL: T = T::EIGHTH;
+    const THRESHOLDS: StartThresholds<T> = StartThresholds::VALUES;
 
     pub fn new() -> Self {
         Self { last_flank: None, continues: None, rests: false, standstill_time: T::ZERO, standstill_error: T::ZERO }
@@ -37,7 +33,7 @@ impl<T: Real> StartPrediction<T> {
 
     /// Time of standing still after which friction holds the link [s].
     fn required_standstill(tables: &CompensationTables<T>) -> T {
-        Self::STANDSTILL_TIME * tables.rest.hunting
+        Self::THRESHOLDS.standstill_time * tables.rest.hunting
     }
 
     /// True if friction holds the link of a joint that is asked to rest.
@@ -58,7 +54,7 @@ impl<T: Real> StartPrediction<T> {
         if rests {
             self.rests = true;
             let required_standstill = Self::required_standstill(tables);
-            if (state.error - self.standstill_error).abs() > Self::STANDSTILL_TRAVEL * state.half_gap {
+            if (state.error - self.standstill_error).abs() > Self::THRESHOLDS.standstill_travel * state.half_gap {
                 (self.standstill_error, self.standstill_time) = (state.error, T::ZERO);
             }
             self.standstill_time = clamp(self.standstill_time + tables.clock.period, T::ZERO, required_standstill);

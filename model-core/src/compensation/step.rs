@@ -1,5 +1,6 @@
 //! One control period of the compensation: selects the control law, blends compensation with plain control, limits the torque.
 
+use super::control_demand::ControlDemand;
 use super::flank::FlankControl;
 use super::impedance::ImpedanceLaw;
 use super::inverse::BacklashInverse;
@@ -10,6 +11,7 @@ use super::plain::PlainControl;
 use super::position::PositionLaw;
 use super::set_point::{Command, CommandRef, ControlOutput, Stage};
 use super::slow_task::SlowTask;
+use super::thresholds::EstimateBounds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -129,42 +131,20 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         if !estimates.source.allows_control() {
             return self.stay_off(Stage::Off);
         }
-        let known = estimates.encoder_offset.valid || estimates.gap.valid;
-        if known && estimates.encoder_offset.value.is_finite() {
-            self.encoder_offset = estimates.encoder_offset.value;
-        }
-        let mut state = LoopState::new(tables, estimates, self.encoder_offset, command);
-        // A motor that has arrived early touches its flank now and then, but the flank carries no load.
-        state.teeth_open |= self.flank.arrived_early();
-        let flank_missing = self.flank.stage() == Stage::Touching && state.teeth_open && state.gap_known;
-        if flank_missing && matches!(command, CommandRef::Position { .. }) {
-            self.load.integrate_error(tables, self.position.error_beyond_deadband(&state));
-        }
-        self.load.update(tables, estimates, &state, self.trust == T::ONE);
-        let demand = match command {
-            CommandRef::Position { now, ahead } => {
-                if state.link_seen && self.task == SlowTask::UpdateEdges {
-                    self.inverse.update_edges(tables, &state, now);
-                }
-                self.position.demand(tables, &self.load, &state, now, ahead)
-            }
-            CommandRef::Impedance(point) => self.impedance.demand(tables, &self.load, &state, point),
-        };
+        let state = self.loop_state(estimates, command);
+        self.update_load(estimates, &state, command);
+        let demand = self.demand(&state, command);
         if self.task == SlowTask::Monitor {
-            let monitor_input = self.monitor_input(&state, &command);
-            // Flank changes count as hunting only while the set-point is plausible.
-            let set_point_plausible = monitor_input.has_error || matches!(command, CommandRef::Impedance(_));
-            let acting = (self.trust > T::ZERO && state.gap_known && set_point_plausible).then(|| self.flank.flank());
-            self.monitor.step(tables, &state, &monitor_input, acting);
+            self.monitor(&state, &command);
         }
         let stepped_back = self.monitor.is_tripped();
-        let sees = state.gap_known && demand.is_finite() && !stepped_back;
-        let change = if sees { tables.law.trust_step } else { -tables.law.trust_step };
+        let acts = state.gap_known && demand.is_finite() && !stepped_back;
+        let change = if acts { tables.law.trust_step } else { -tables.law.trust_step };
         self.trust = clamp(self.trust + change, T::ZERO, T::ONE);
         // Plain control is computed only while it has a share in the torque.
-        let plain_acts = !sees || self.trust < T::ONE;
+        let plain_acts = !acts || self.trust < T::ONE;
         let plain_torque = if plain_acts { self.plain_torque(&state, &command) } else { T::ZERO };
-        let compensated = if sees {
+        let compensated = if acts {
             self.flank.step(tables, &state, &demand)
         } else {
             self.flank.reset(&state);
@@ -175,26 +155,72 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         let wanted = plain_torque + self.trust * (compensated - plain_torque);
         let may_act = wanted.is_finite() && estimates.torque_response != TorqueResponse::Tested;
         let torque = if may_act { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
-        self.load.record_saturation(tables, torque != wanted);
-        let cut = torque - wanted;
-        self.plain.update(tables, &state, cut);
-        let inverse_acts = plain_acts && state.link_seen && matches!(command, CommandRef::Position { .. });
-        self.inverse.update_integral(tables, &state, inverse_acts.then_some(cut));
-        if self.task == SlowTask::EstimateDemand {
-            self.inverse.estimate(tables, torque);
-        }
-        self.task = self.task.following();
-        let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
+        self.apply_torque(&state, command, torque, wanted, plain_acts);
         ControlOutput {
             torque: torque * tables.gear.link_per_motor,
-            stage,
+            stage: if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain },
             flank: Some(self.flank.flank()),
-            demand: if sees { demand.after_crossing } else { T::ZERO },
+            demand: if acts { demand.after_crossing } else { T::ZERO },
             load: [self.load.gravity_torque(), self.load.friction()],
             trust: self.trust,
             stepped_back,
-            short_of_torque: torque != wanted || sees && demand.brakes_early,
+            short_of_torque: torque != wanted || acts && demand.brakes_early,
         }
+    }
+
+    /// Computes the state of the loop, with the encoder offset as last known.
+    fn loop_state(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> LoopState<T> {
+        let known = estimates.encoder_offset.valid || estimates.gap.valid;
+        if known && estimates.encoder_offset.value.is_finite() {
+            self.encoder_offset = estimates.encoder_offset.value;
+        }
+        let mut state = LoopState::new(self.tables, estimates, self.encoder_offset, command);
+        // A motor that has arrived early touches its flank now and then, but the flank carries no load.
+        state.teeth_open |= self.flank.arrived_early();
+        state
+    }
+
+    /// Updates the load model. Where a flank should carry but the teeth are open, position mode integrates the error.
+    fn update_load(&mut self, estimates: &Estimates<T>, state: &LoopState<T>, command: CommandRef<T>) {
+        let flank_missing = self.flank.stage() == Stage::Touching && state.teeth_open && state.gap_known;
+        if flank_missing && matches!(command, CommandRef::Position { .. }) {
+            self.load.integrate_error(self.tables, self.position.error_beyond_deadband(state));
+        }
+        self.load.update(self.tables, estimates, state, self.trust == T::ONE);
+    }
+
+    /// Computes the demand of the control law of the command's mode.
+    fn demand(&mut self, state: &LoopState<T>, command: CommandRef<T>) -> ControlDemand<T> {
+        match command {
+            CommandRef::Position { now, ahead } => {
+                if state.link_seen && self.task == SlowTask::UpdateEdges {
+                    self.inverse.update_edges(self.tables, state, now);
+                }
+                self.position.demand(self.tables, &self.load, state, now, ahead)
+            }
+            CommandRef::Impedance(point) => self.impedance.demand(self.tables, &self.load, state, point),
+        }
+    }
+
+    /// Lets the monitor judge the loop. Flank changes count as hunting only while the set-point is plausible.
+    fn monitor(&mut self, state: &LoopState<T>, command: &CommandRef<T>) {
+        let input = self.monitor_input(state, command);
+        let set_point_plausible = input.has_error || matches!(command, CommandRef::Impedance(_));
+        let acting = (self.trust > T::ZERO && state.gap_known && set_point_plausible).then(|| self.flank.flank());
+        self.monitor.step(self.tables, state, &input, acting);
+    }
+
+    /// Tells load model, plain control and inverse the torque that the limit has left of the wanted torque [N m].
+    fn apply_torque(&mut self, state: &LoopState<T>, command: CommandRef<T>, torque: T, wanted: T, plain_acts: bool) {
+        let cut = torque - wanted;
+        self.load.record_saturation(self.tables, torque != wanted);
+        self.plain.update(self.tables, state, cut);
+        let inverse_acts = plain_acts && state.link_seen && matches!(command, CommandRef::Position { .. });
+        self.inverse.update_integral(self.tables, state, inverse_acts.then_some(cut));
+        if self.task == SlowTask::EstimateDemand {
+            self.inverse.estimate(self.tables, torque);
+        }
+        self.task = self.task.following();
     }
 
     /// Torque of plain control [N m].
@@ -216,13 +242,15 @@ impl<'tables, T: Real> Compensation<'tables, T> {
                 let planned = tables.body.load_inertia * now.acceleration + load.planned_friction(tables, now.speed);
                 let most = tables.limits.braking * tables.limits.motor;
                 let whole = planned + tables.body.motor_inertia * now.acceleration;
-                let is_asked_too_much = (whole + load.gravity_torque()).abs() > most;
+                let exceeds_motor = (whole + load.gravity_torque()).abs() > most;
                 MonitorInput {
                     planned,
                     load: load.gravity_torque(),
                     // The error is not judged while the motion needs more torque than the motor has, nor above 1 rad:
                     // then set-point or reading is implausible. A loop that runs away is detected long before.
-                    has_error: state.link_seen && !is_asked_too_much && state.error.abs() < T::ONE,
+                    has_error: state.link_seen
+                        && !exceeds_motor
+                        && state.error.abs() < EstimateBounds::<T>::VALUES.implausible_error,
                     external_impact: load.external_impact(tables),
                 }
             }

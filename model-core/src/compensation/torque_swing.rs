@@ -1,6 +1,7 @@
 //! Detector of a torque that swings from side to side: then the delays of the loop exceed the designed ones, and the
 //! motor bears less damping.
 
+use super::thresholds::TorqueSwingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::beyond;
@@ -14,12 +15,7 @@ pub(super) struct TorqueSwing<T: Real> {
 }
 
 impl<T: Real> TorqueSwing<T> {
-    /// Torque beyond which it counts as large, over the motor's limit [-].
-    const LARGE_TORQUE_SHARE: T = T::HALF;
-
-    /// Time constant of the loop over the time within which a swinging torque changes from side to side [-]: faster
-    /// than any motion that the loop can follow.
-    const SIDE_CHANGE_RATE: T = T::FOUR;
+    const THRESHOLDS: TorqueSwingThresholds<T> = TorqueSwingThresholds::VALUES;
 
     pub fn new() -> Self {
         Self { side: T::ZERO, swings: false }
@@ -32,9 +28,9 @@ impl<T: Real> TorqueSwing<T> {
 
     /// Checks the torque of one of `periods` periods [N m].
     pub fn update(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
-        let excess = beyond(torque, Self::LARGE_TORQUE_SHARE * tables.limits.motor);
+        let excess = beyond(torque, Self::THRESHOLDS.large_torque * tables.limits.motor);
         if excess == T::ZERO {
-            self.side = beyond(self.side, Self::SIDE_CHANGE_RATE * periods * tables.law.back_calculation);
+            self.side = beyond(self.side, Self::THRESHOLDS.side_change_rate * periods * tables.law.back_calculation);
         } else {
             let new_side = if excess > T::ZERO { T::ONE } else { -T::ONE };
             self.swings |= new_side * self.side < T::ZERO;

@@ -17,8 +17,8 @@
 //! limits:
 //!
 //! ```text
-//! first swing    w <= sqrt(K (1/J_m + 1/J_l)) / SWING
-//! crossing time  w <= CROSSING / (2 sqrt(gap J_m / T))
+//! first swing    w <= sqrt(K (1/J_m + 1/J_l)) / swing_ratio
+//! crossing time  w <= crossing_ratio / (2 sqrt(gap J_m / T))
 //! ```
 
 use core::f64::consts::PI;
@@ -27,32 +27,12 @@ use super::body::JointBody;
 use super::damping::{loop_damping, motor_damping_bound, reaction};
 use super::settings::{self, CompensationSettings, compensation_settings};
 use crate::compensation::plain::swinging_motor_damping;
+use crate::compensation::thresholds::BANDWIDTH;
 use crate::gears::design::{BandwidthLimit, DesignError, validate};
 use parameters::{JointParameters, Surroundings};
 
-/// Smallest phase margin of the motor alone in the open gap [rad]: three degrees. Measured on joints with up to a fifth
-/// more lag than on the data sheet: down to 4.7 degrees the gap was estimated on as many joints as at any rate; below
-/// zero it was not estimated on a third to nearly all of them.
-const LEAST_MARGIN: f64 = 3.0 * PI / 180.0;
-
-/// Smallest number of control periods per time constant 1/w. Measured: from 33 on the gap was estimated on as many
-/// joints as at any rate; at 28 and below, not on all of them.
-const PERIODS: f64 = 33.0;
-
-/// Smallest frequency of the first swing of motor against link, over the bandwidth [-]. Tuned on one strain wave gear
-/// in motion T2: hunting at 3.9, none at 5; inertias 30 % off move the swing by 15 %. No test holds it yet.
-const SWING: f64 = 5.0;
-
-/// Largest crossing time from rest to rest at the largest torque, over the time constant of the loop [-]. Tuned on one
-/// joint with 80 mrad of play in a sine of 1 Hz: the link is thrown from flank to flank at 0.56, not at 0.42; the guess
-/// of the gap may be half of the gap. No test holds it yet.
-const CROSSING: f64 = 0.3;
-
-/// Default bandwidth, where the joint permits it [rad/s].
-const USUAL: f64 = 60.0;
-
-/// Highest control rate considered [Hz].
-const FASTEST: f64 = 1e5;
+/// Smallest phase margin of the motor alone in the open gap [rad].
+const MIN_PHASE_MARGIN: f64 = BANDWIDTH.phase_margin * PI / 180.0;
 
 /// Bisection steps for a frequency, a rate or a bandwidth: to a millionth.
 const HALVINGS: usize = 60;
@@ -72,8 +52,8 @@ fn joint_bandwidth_limit(body: &JointBody, settings: &CompensationSettings) -> (
     let gap = 2.0 * body.half_backlash / body.lever;
     let crossing = 2.0 * libm::sqrt(gap * body.motor / (body.gear * settings.torque_limit));
     // A joint without a gap has no crossing.
-    let by_crossing = if crossing > 0.0 { CROSSING / crossing } else { f64::INFINITY };
-    let by_swing = swing / SWING;
+    let by_crossing = if crossing > 0.0 { BANDWIDTH.crossing_ratio / crossing } else { f64::INFINITY };
+    let by_swing = swing / BANDWIDTH.swing_ratio;
     if by_swing < by_crossing {
         (rounded_down(by_swing), BandwidthLimit::Swing(swing))
     } else {
@@ -110,7 +90,7 @@ pub struct BandwidthRange {
 /// Returns an error if the joint is invalid or a setting is out of range.
 pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<BandwidthRange, DesignError> {
     validate(joint)?;
-    let mut settings = compensation_settings(of, USUAL);
+    let mut settings = compensation_settings(of, BANDWIDTH.default);
     settings::check(&settings)?;
     let body = JointBody::new(joint);
     let (by_joint, limit) = joint_bandwidth_limit(&body, &settings);
@@ -121,7 +101,7 @@ pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<Ban
         Err(DesignError::ControlTooSlow { widest, .. }) => (widest, None),
         Err(other) => return Err(other),
     };
-    Ok(BandwidthRange { usual: USUAL.min(widest), widest, limit })
+    Ok(BandwidthRange { usual: BANDWIDTH.default.min(widest), widest, limit })
 }
 
 /// Default bandwidth: 60 rad/s, or the widest that joint, control rate and delays permit, if that is less [rad/s].
@@ -137,14 +117,14 @@ pub fn good_bandwidth(joint: &JointParameters, of: &Surroundings) -> Result<f64,
 fn check_rate(body: &JointBody, settings: &CompensationSettings) -> Result<(), DesignError> {
     let rate = f64::from(settings.control_rate);
     let permits = |rate: f64, bandwidth: f64| {
-        rate >= PERIODS * bandwidth && phase_margin(body, settings, rate, bandwidth) >= LEAST_MARGIN
+        rate >= BANDWIDTH.periods * bandwidth && phase_margin(body, settings, rate, bandwidth) >= MIN_PHASE_MARGIN
     };
     if permits(rate, settings.bandwidth) {
         return Ok(());
     }
-    let lowest = permits(FASTEST, settings.bandwidth)
-        .then(|| libm::ceil(bisect(rate, FASTEST, |rate| permits(rate, settings.bandwidth))) as u32);
-    let widest = bisect(settings.bandwidth.min(rate / PERIODS), 0.0, |bandwidth| permits(rate, bandwidth));
+    let lowest = permits(BANDWIDTH.fastest_rate, settings.bandwidth)
+        .then(|| libm::ceil(bisect(rate, BANDWIDTH.fastest_rate, |rate| permits(rate, settings.bandwidth))) as u32);
+    let widest = bisect(settings.bandwidth.min(rate / BANDWIDTH.periods), 0.0, |bandwidth| permits(rate, bandwidth));
     let widest = rounded_down(widest);
     Err(DesignError::ControlTooSlow { given: settings.control_rate, bandwidth: settings.bandwidth, lowest, widest })
 }

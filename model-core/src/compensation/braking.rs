@@ -209,3 +209,100 @@ impl<T: Real> BrakingLimit<T> {
         Approach { closing: speed, acceleration: acceleration + (T::ONE - linear) * braking }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    /// Deceleration of 10 N m at 4 kg m^2, of which 0.9 are planned [rad/s^2].
+    const DECELERATION: f64 = 0.9 * 10.0 / 4.0;
+
+    /// Error at which the linear law needs this deceleration [rad].
+    const KNEE: f64 = DECELERATION / 100.0;
+
+    fn limit(gravity_torque: f64, friction: f64) -> BrakingLimit<f64> {
+        BrakingLimit::new(&tables(), &LoadModel::of_known(gravity_torque, friction), &state())
+    }
+
+    /// Set-point with a speed and a deceleration that stays.
+    fn set_point(speed: f64, acceleration: f64) -> SetPointMotion<f64> {
+        SetPointMotion { speed, acceleration, ahead: acceleration }
+    }
+
+    #[test]
+    fn error_up_to_the_knee_leaves_the_linear_law() {
+        let at_rest = set_point(0.0, 0.0);
+        assert!(limit(0.0, 0.0).approach(0.99 * KNEE, &at_rest).is_none());
+        assert!(limit(0.0, 0.0).approach(1.01 * KNEE, &at_rest).is_some());
+    }
+
+    #[test]
+    fn error_beyond_the_knee_closes_by_the_root() {
+        let approach = limit(0.0, 0.0).approach(9.0 * KNEE, &set_point(0.0, 0.0)).expect("an approach");
+        let speed = f64::sqrt(2.0 * DECELERATION * 8.5 * KNEE);
+        assert!((approach.closing - speed).abs() < 1e-9, "{} not {speed}", approach.closing);
+        assert!((approach.acceleration + DECELERATION * (1.0 - 1.0 / 9.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn approach_mirrors_with_the_error() {
+        let [on, back] = [1.0, -1.0].map(|side| {
+            let approach = limit(0.0, 0.0).approach(side * 4.0 * KNEE, &set_point(0.0, 0.0)).expect("an approach");
+            [side * approach.closing, side * approach.acceleration]
+        });
+        assert_eq!(on, back);
+    }
+
+    #[test]
+    fn load_that_brakes_permits_a_larger_error() {
+        let at_rest = set_point(0.0, 0.0);
+        assert!(limit(5.0, 0.0).approach(1.3 * KNEE, &at_rest).is_none(), "braked by the load");
+        assert!(limit(-5.0, 0.0).approach(0.7 * KNEE, &at_rest).is_some(), "driven by the load");
+    }
+
+    #[test]
+    fn friction_brakes_both_ways() {
+        let at_rest = set_point(0.0, 0.0);
+        assert!([1.4, -1.4].map(|side| limit(0.0, 5.0).approach(side * KNEE, &at_rest).is_none()) == [true; 2]);
+    }
+
+    #[test]
+    fn weight_beyond_the_motor_is_approached_with_the_least_torque() {
+        let approach = limit(-12.0, 0.0).approach(4.0 * KNEE, &set_point(0.0, 0.0)).expect("an approach");
+        let (deceleration, knee) = (DECELERATION / 8.0, KNEE / 8.0);
+        let speed = f64::sqrt(2.0 * deceleration * (4.0 * KNEE - 0.5 * knee));
+        assert!((approach.closing - speed).abs() < 1e-9);
+    }
+
+    #[test]
+    fn braking_set_point_leaves_less_for_the_error() {
+        let error = 0.5 * KNEE;
+        assert!(limit(0.0, 0.0).approach(error, &set_point(0.5, 0.0)).is_none());
+        assert!(limit(0.0, 0.0).approach(error, &set_point(0.5, -0.7 * DECELERATION)).is_some());
+    }
+
+    #[test]
+    fn error_below_a_quarter_of_the_knee_is_always_linear() {
+        let hard = set_point(0.5, -3.0 * DECELERATION);
+        assert!(limit(0.0, 0.0).approach(0.24 * KNEE, &hard).is_none());
+        assert!(limit(0.0, 0.0).approach(0.26 * KNEE, &hard).is_some());
+    }
+
+    #[test]
+    fn set_point_that_stops_first_is_approached_at_its_place_of_rest() {
+        let (error, speed, brakes) = (4.0 * KNEE, 0.02, 0.5 * DECELERATION);
+        let approach = limit(0.0, 0.0).approach(error, &set_point(speed, -brakes)).expect("an approach");
+        let rest = error + 0.5 * speed * speed / brakes;
+        let closing = f64::sqrt(2.0 * DECELERATION * (rest - 0.5 * KNEE)) - speed;
+        assert!((approach.closing - closing).abs() < 1e-9);
+    }
+
+    #[test]
+    fn link_in_the_open_gap_accelerates_under_its_load_alone() {
+        let (tables, load) = (tables(), LoadModel::of_known(3.0, 0.0));
+        let acceleration =
+            |teeth_open| limit(3.0, 0.0).acceleration(&tables, &load, &LoopState { teeth_open, ..state() }, 7.0);
+        assert_eq!((acceleration(true), acceleration(false)), (-1.0, 1.0));
+    }
+}

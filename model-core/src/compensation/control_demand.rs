@@ -75,3 +75,33 @@ impl<T: Real> ControlDemand<T> {
         (self.law_torque + self.now + self.after_crossing + self.free_acceleration).is_finite()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    fn demand(torque: impl Fn(f64) -> f64) -> ControlDemand<f64> {
+        ControlDemand::new(&tables(), &LoadModel::of_known(3.0, 0.0), &state(), 1.0, torque, false)
+    }
+
+    #[test]
+    fn demand_after_the_crossing_is_that_of_its_end() {
+        let crossing = CrossingTiming::new(&tables(), state().half_gap, 0.0).duration;
+        let demand = demand(|time| 100.0 * time);
+        assert_eq!(demand.now, 0.0);
+        assert!((demand.after_crossing - 100.0 * (crossing + 2e-3)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn link_without_a_flank_accelerates_under_its_load() {
+        assert_eq!(demand(|_| 0.0).free_acceleration, -1.0);
+    }
+
+    #[test]
+    fn demand_that_is_no_number_is_not_finite() {
+        assert!(demand(|_| 1.0).is_finite());
+        assert!(!demand(|_| f64::NAN).is_finite());
+        assert!(!ControlDemand { law_torque: f64::INFINITY, ..demand(|_| 1.0) }.is_finite());
+    }
+}

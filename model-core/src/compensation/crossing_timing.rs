@@ -48,3 +48,56 @@ impl<T: Real> CrossingTiming<T> {
         Self { duration: if flat < twice { twice } else { flat }, ramp }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    #[test]
+    fn wide_gap_has_a_steady_speed() {
+        let timing = CrossingTiming::at(0.2, 20e-3, 0.15, 8e-3);
+        assert!((timing.ramp - 30e-3).abs() < 1e-12 && (timing.duration - 130e-3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn narrow_gap_is_two_ramps() {
+        let timing = CrossingTiming::at(0.6, 4e-3, 0.15, 8e-3);
+        assert!((timing.ramp - f64::sqrt(0.15 * 4e-3)).abs() < 1e-6);
+        assert_eq!(timing.duration, 2.0 * timing.ramp);
+    }
+
+    #[test]
+    fn ramp_is_never_shorter_than_the_delays_allow() {
+        let timing = CrossingTiming::at(0.2, 1e-6, 0.15, 8e-3);
+        assert_eq!((timing.ramp, timing.duration), (8e-3, 16e-3));
+    }
+
+    #[test]
+    fn small_demand_strikes_with_the_least_force() {
+        let at = |demand| CrossingTiming::new(&tables(), 4e-3, demand).duration;
+        assert_eq!([at(0.0), at(-1.9)], [at(2.0); 2]);
+    }
+
+    #[test]
+    fn large_demand_crosses_faster_up_to_the_hardest_strike() {
+        let at = |demand| CrossingTiming::new(&tables(), 20e-3, demand).duration;
+        let tables = tables();
+        assert!(at(3.0) <= at(2.0));
+        assert_eq!(at(6.0), at(60.0));
+        assert!(at(6.0) <= tables.crossing.longest);
+    }
+
+    #[test]
+    fn duration_is_bounded() {
+        let timing = CrossingTiming::new(&tables(), 1.0, 0.0);
+        assert_eq!((timing.duration, timing.ramp), (60e-3, 30e-3));
+    }
+
+    #[test]
+    fn joint_without_a_strike_speed_takes_the_longest_time() {
+        let mut tables = tables();
+        tables.crossing.strike_speed_per_torque = 0.0;
+        assert_eq!(CrossingTiming::new(&tables, 2e-3, 5.0).duration, 60e-3);
+    }
+}

@@ -165,3 +165,78 @@ impl<T: Real> DemandEstimator<T> {
         self.load.gravity_torque = clamp(self.load.gravity_torque, -limit, limit);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    fn motion(speed: f64, acceleration: f64) -> Motion<f64> {
+        Motion { speed, acceleration, ..Motion::default() }
+    }
+
+    #[test]
+    fn demand_of_an_acceleration_is_that_of_the_link() {
+        let mut demand = DemandEstimator::new(&tables());
+        demand.plan(&tables(), &motion(0.0, 1.0)).expect("a number");
+        assert_eq!(demand.torque(), 3.0);
+    }
+
+    #[test]
+    fn motion_that_is_not_finite_demands_nothing() {
+        let mut demand = DemandEstimator::new(&tables());
+        for acceleration in [f64::NAN, f64::INFINITY] {
+            assert_eq!(demand.plan(&tables(), &motion(0.1, acceleration)), None);
+            assert_eq!(demand.torque(), 0.0);
+        }
+    }
+
+    #[test]
+    fn demand_is_bounded_to_twice_the_motor_limit() {
+        let mut demand = DemandEstimator::new(&tables());
+        demand.plan(&tables(), &motion(0.0, -1e6)).expect("a number");
+        assert_eq!(demand.torque(), -20.0);
+    }
+
+    #[test]
+    fn inertia_stays_within_its_bounds() {
+        for (torque, inertia) in [(1e3, 3.25), (-1e3, 0.4375)] {
+            let mut demand = DemandEstimator::new(&tables());
+            for _ in 0..2000 {
+                demand.plan(&tables(), &motion(0.0, 2.0)).expect("a number");
+                demand.estimate(&tables(), torque);
+            }
+            assert_eq!(demand.inertia, inertia);
+        }
+    }
+
+    #[test]
+    fn small_acceleration_does_not_show_the_inertia() {
+        let inertia = |acceleration: f64| {
+            let mut demand = DemandEstimator::new(&tables());
+            demand.plan(&tables(), &motion(0.0, acceleration)).expect("a number");
+            demand.estimate(&tables(), 5.0);
+            demand.inertia
+        };
+        // A twentieth of the motor's limit accelerates 4 kg m^2 by 0.125 rad/s^2.
+        assert_eq!(inertia(0.124), 1.0);
+        assert!(inertia(0.126) > 1.0);
+    }
+
+    #[test]
+    fn torque_that_is_no_number_estimates_nothing() {
+        let mut demand = DemandEstimator::new(&tables());
+        demand.plan(&tables(), &motion(0.0, 2.0)).expect("a number");
+        demand.estimate(&tables(), f64::NAN);
+        assert_eq!((demand.inertia, demand.gravity_torque()), (1.0, 0.0));
+    }
+
+    #[test]
+    fn half_of_the_demand_at_the_teeth_counts_as_transmitted() {
+        let transmitted = |torque: f64, transmitted: f64| {
+            DemandEstimator { torque, transmitted, ..DemandEstimator::new(&tables()) }.is_transmitted()
+        };
+        assert!(!transmitted(4.0, 2.0) && transmitted(4.0, 2.1) && transmitted(-4.0, -2.1));
+        assert!(!transmitted(4.0, -2.1));
+    }
+}

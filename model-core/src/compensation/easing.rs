@@ -64,3 +64,75 @@ impl<T: Real> Easing<T> {
         if self.start_error.is_some() { Self::THRESHOLDS.held_share } else { T::ONE }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+    use crate::observer::Estimates;
+
+    /// Steady time before the load is eased [periods].
+    const STEADY: u32 = 1500;
+
+    /// Returns the share that is held after a steady load at rest [N m] and `periods`, at an error over the largest
+    /// travel of a steady load.
+    fn held(gravity_torque: f64, friction: f64, error: f64, periods: u32) -> f64 {
+        let (tables, load, mut easing) = (tables(), LoadModel::of_known(gravity_torque, friction), Easing::new());
+        let max_travel = 0.5 * tables.rest.first_deadband * state().half_gap;
+        let state = LoopState { error: error * max_travel, ..state() };
+        // The first period records the load.
+        (0..periods).for_each(|_| _ = easing.step(&tables, &load, &state, true, true));
+        easing.step(&tables, &load, &state, true, true)
+    }
+
+    #[test]
+    fn steady_load_within_friction_is_eased() {
+        assert_eq!((held(1.0, 2.0, 0.0, STEADY - 5), held(1.0, 2.0, 0.0, STEADY + 5)), (1.0, 0.5));
+    }
+
+    #[test]
+    fn load_beyond_friction_is_held() {
+        // Friction and twice the uncertainty of torques.
+        assert_eq!((held(2.39, 2.0, 0.0, STEADY + 5), held(2.41, 2.0, 0.0, STEADY + 5)), (0.5, 1.0));
+        assert_eq!(held(-2.41, 2.0, 0.0, STEADY + 5), 1.0);
+    }
+
+    #[test]
+    fn load_within_the_noise_is_held() {
+        assert_eq!((held(0.059, 2.0, 0.0, STEADY + 5), held(0.061, 2.0, 0.0, STEADY + 5)), (1.0, 0.5));
+    }
+
+    #[test]
+    fn error_beyond_the_travel_keeps_the_load() {
+        assert_eq!((held(1.0, 2.0, 0.9, STEADY + 5), held(1.0, 2.0, 1.1, STEADY + 5)), (0.5, 1.0));
+    }
+
+    #[test]
+    fn link_that_gives_way_keeps_the_load_until_it_moves() {
+        let (tables, load, mut easing) = (tables(), LoadModel::of_known(1.0, 2.0), Easing::new());
+        let at = |error: f64| LoopState { error, ..state() };
+        (0..STEADY + 5).for_each(|_| _ = easing.step(&tables, &load, &at(0.0), true, true));
+        assert_eq!(easing.step(&tables, &load, &at(1e-4), true, true), 1.0);
+        (0..2 * STEADY).for_each(|_| assert_eq!(easing.step(&tables, &load, &at(0.0), true, true), 1.0));
+        assert_eq!(easing.step(&tables, &load, &at(0.0), false, true), 1.0);
+        (0..STEADY + 5).for_each(|_| _ = easing.step(&tables, &load, &at(0.0), true, true));
+        assert_eq!(easing.step(&tables, &load, &at(0.0), true, true), 0.5);
+    }
+
+    #[test]
+    fn link_that_friction_does_not_hold_keeps_the_load() {
+        let (tables, load, mut easing) = (tables(), LoadModel::of_known(1.0, 2.0), Easing::new());
+        (0..2 * STEADY).for_each(|_| assert_eq!(easing.step(&tables, &load, &state(), true, false), 1.0));
+    }
+
+    #[test]
+    fn push_lets_the_load_be_eased_again() {
+        let (tables, mut easing) = (tables(), Easing { gave_way: true, ..Easing::new() });
+        let mut estimates = Estimates::default();
+        (estimates.load_torque.value, estimates.load_torque.valid) = (8.1, true);
+        let mut pushed = LoadModel::of_known(1.0, 2.0);
+        pushed.update(&tables, &estimates, &state(), true);
+        easing.step(&tables, &pushed, &state(), true, true);
+        assert!(!easing.gave_way);
+    }
+}

@@ -395,3 +395,239 @@ fn follow_link<T: Real>(
 fn landing_speed<T: Real>(tables: &CompensationTables<T>, demand: T) -> T {
     clamp(tables.landing.speed_per_torque * demand.abs(), tables.landing.speed, tables.landing.fastest)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{HALF_GAP, demand, state, tables};
+
+    /// State with an opening of the drive flank, over the half-gap, without contact.
+    fn open(opening: f64) -> LoopState<f64> {
+        LoopState { gap: HALF_GAP * (1.0 - opening), contact: None, teeth_open: true, ..state() }
+    }
+
+    /// Control in a stage, on the drive flank.
+    fn control(stage: Stage) -> FlankControl<f64> {
+        FlankControl { stage, ..FlankControl::new() }
+    }
+
+    #[test]
+    fn demand_of_the_other_sign_crosses() {
+        let mut flank = control(Stage::Touching);
+        flank.step(&tables(), &state(), &demand(1.0, -3.0));
+        assert_eq!((flank.flank(), flank.stage()), (Flank::Back, Stage::Crossing));
+    }
+
+    #[test]
+    fn zero_of_the_demand_in_the_middle_of_the_crossing_decides() {
+        let tables = tables();
+        let turned = |now, ahead| control(Stage::Touching).demand_turned(&tables, &state(), now, ahead);
+        assert!(turned(1.0, -1.1) && !turned(1.0, -0.9));
+    }
+
+    #[test]
+    fn demand_within_the_hysteresis_stays() {
+        let tables = tables();
+        // 0.3 M = 0.06 N m bounds twice the demand ahead less the demand now.
+        let turned = |ahead| control(Stage::Touching).demand_turned(&tables, &state(), 0.0, ahead);
+        assert!(!turned(-0.049) && turned(-0.051), "planned");
+        let turned = |now, ahead| control(Stage::Touching).demand_turned(&tables, &state(), now, ahead);
+        assert!(!turned(-0.05, -0.0549) && turned(-0.05, -0.0551), "measured");
+    }
+
+    #[test]
+    fn demand_on_the_back_flank_mirrors() {
+        let mut flank = FlankControl { flank: Flank::Back, ..control(Stage::Touching) };
+        let touching = LoopState { gap: -HALF_GAP, contact: Some(Flank::Back), ..state() };
+        flank.step(&tables(), &touching, &demand(-1.0, 3.0));
+        assert_eq!(flank.flank(), Flank::Drive);
+    }
+
+    #[test]
+    fn demand_that_is_no_number_stays() {
+        assert!(!control(Stage::Touching).demand_turned(&tables(), &state(), f64::NAN, -3.0));
+        assert!(!control(Stage::Touching).demand_turned(&tables(), &state(), 1.0, f64::NAN));
+    }
+
+    #[test]
+    fn each_change_grows_the_hysteresis_to_its_limit() {
+        let (tables, mut flank) = (tables(), control(Stage::Touching));
+        let factors = [(); 3].map(|()| {
+            flank.start_crossing(&tables, &state(), &demand(1.0, -3.0), Stage::Touching);
+            flank.hysteresis
+        });
+        assert_eq!(factors, [4.0, 6.0, 6.0]);
+    }
+
+    #[test]
+    fn grown_hysteresis_asks_for_more_demand() {
+        let tables = tables();
+        let grown = FlankControl { hysteresis: 4.0, ..control(Stage::Touching) };
+        // 0.3 M and three times M: 0.66 N m.
+        let turned = |ahead: f64| grown.demand_turned(&tables, &state(), 0.0, ahead);
+        assert!(!turned(-0.32) && turned(-0.34));
+    }
+
+    #[test]
+    fn growth_is_bounded_in_a_narrow_gap() {
+        let tables = tables();
+        let grown = FlankControl { hysteresis: 4.0, ..control(Stage::Touching) };
+        // 0.3 K h = 0.036 N m at a twentieth of the gap.
+        let narrow = LoopState { half_gap: 1e-4, ..state() };
+        assert!(grown.demand_turned(&tables, &narrow, 0.0, -0.051));
+    }
+
+    #[test]
+    fn hysteresis_decays_twice_as_fast_without_a_load() {
+        let left = |rests_unloaded| {
+            let mut flank = FlankControl { hysteresis: 2.0, ..control(Stage::Touching) };
+            flank.step(&tables(), &state(), &ControlDemand { rests_unloaded, ..demand(1.0, 1.0) });
+            flank.hysteresis - 1.0
+        };
+        assert!((left(false) - 0.99).abs() < 1e-12 && (left(true) - 0.99 * 0.99).abs() < 1e-12);
+    }
+
+    #[test]
+    fn flank_that_opens_is_landed_on() {
+        let stage = |opening| {
+            let mut flank = control(Stage::Touching);
+            flank.step(&tables(), &open(opening), &demand(1.0, 1.0));
+            flank.stage()
+        };
+        assert_eq!([0.29, 0.31, 0.49].map(stage), [Stage::Touching, Stage::Landing, Stage::Landing]);
+    }
+
+    #[test]
+    fn flank_lost_beyond_half_the_half_gap_is_crossed_back_to() {
+        let mut flank = control(Stage::Touching);
+        flank.step(&tables(), &open(0.51), &demand(1.0, 1.0));
+        assert_eq!((flank.flank(), flank.stage()), (Flank::Drive, Stage::Crossing));
+    }
+
+    #[test]
+    fn path_that_ends_early_is_followed_by_a_landing() {
+        let mut flank = control(Stage::Crossing);
+        flank.elapsed = 1.0;
+        flank.step(&tables(), &open(1.0), &demand(1.0, 1.0));
+        assert_eq!(flank.stage(), Stage::Landing);
+    }
+
+    #[test]
+    fn flank_met_carries_with_rising_torque() {
+        let mut flank = control(Stage::Landing);
+        let torques = [(); 3].map(|()| flank.step(&tables(), &state(), &demand(4.0, 4.0)));
+        assert_eq!((flank.stage(), torques), (Stage::Touching, [2.0, 4.0, 4.0]));
+    }
+
+    #[test]
+    fn pushed_link_gets_the_whole_torque_at_once() {
+        let mut flank = control(Stage::Landing);
+        let torque = flank.step(&tables(), &state(), &ControlDemand { external_impact: true, ..demand(4.0, 4.0) });
+        assert_eq!(torque, 4.0);
+    }
+
+    #[test]
+    fn opening_below_the_observer_error_is_a_contact() {
+        let stage = |opening| {
+            let mut flank = control(Stage::Landing);
+            flank.step(&tables(), &open(opening), &demand(1.0, 1.0));
+            flank.stage()
+        };
+        assert_eq!([0.029, 0.031].map(stage), [Stage::Touching, Stage::Landing]);
+    }
+
+    #[test]
+    fn contact_beyond_the_middle_of_the_gap_is_ignored() {
+        let mut flank = control(Stage::Landing);
+        let far = LoopState { contact: Some(Flank::Drive), ..open(1.1) };
+        flank.step(&tables(), &far, &demand(1.0, 1.0));
+        assert_eq!(flank.stage(), Stage::Landing);
+    }
+
+    #[test]
+    fn motor_that_is_not_braked_does_not_meet_its_flank() {
+        let stage = |speed| {
+            let mut flank = control(Stage::Crossing);
+            // A path that has not ended and that no shorter one replaces.
+            flank.path = CrossingPath::new([0.0; 2], [0.0; 2], CrossingTiming { duration: 1e-3, ramp: 1e-4 });
+            flank.elapsed = 0.0;
+            flank.step(&tables(), &LoopState { motor_speed: speed, ..state() }, &demand(1.0, 1.0));
+            flank.stage()
+        };
+        // Four landing speeds of 0.02 rad/s.
+        assert_eq!([0.079, 0.081].map(stage), [Stage::Touching, Stage::Crossing]);
+    }
+
+    #[test]
+    fn landing_motor_that_stands_has_met_its_flank() {
+        let (tables, mut flank) = (tables(), control(Stage::Landing));
+        (flank.elapsed, flank.landing_opening) = (17e-3, 0.2 * HALF_GAP);
+        assert!(flank.stops_the_motor(&tables, &open(0.2), 0.2 * HALF_GAP));
+        assert!(!flank.stops_the_motor(&tables, &open(0.2), 0.31 * HALF_GAP), "too far from the flank");
+        flank.elapsed = 15e-3;
+        assert!(!flank.stops_the_motor(&tables, &open(0.2), 0.2 * HALF_GAP), "too early");
+    }
+
+    #[test]
+    fn landing_speed_follows_the_demand_within_its_bounds() {
+        assert_eq!([0.0, 1.0, -5.0, 50.0].map(|demand| landing_speed(&tables(), demand)), [0.02, 0.02, 0.05, 0.1]);
+    }
+
+    #[test]
+    fn missed_impulse_counts_in_impedance_mode_only() {
+        for (is_impedance, deficit) in [(true, 3e-3), (false, 0.0)] {
+            let mut flank = control(Stage::Landing);
+            flank.step(&tables(), &open(0.5), &ControlDemand { is_impedance, ..demand(3.0, 3.0) });
+            assert_eq!(flank.impulse_deficit, deficit);
+        }
+    }
+
+    #[test]
+    fn missed_impulse_is_bounded() {
+        let mut flank = control(Stage::Landing);
+        flank.impulse_deficit = 100.0;
+        flank.add_impulse_deficit(&tables(), 1.0, &ControlDemand { is_impedance: true, ..demand(1.0, 1.0) });
+        assert_eq!(flank.impulse_deficit, 10.0 * 60e-3);
+    }
+
+    #[test]
+    fn motor_that_arrived_early_gets_no_torque_of_the_old_sign() {
+        let mut flank = FlankControl { requested: false, ..control(Stage::Touching) };
+        assert_eq!(flank.step(&tables(), &state(), &demand(-0.01, 0.0)), 0.0);
+        assert!(flank.arrived_early());
+        assert_eq!(flank.step(&tables(), &state(), &demand(0.5, 0.5)), 0.5);
+        assert!(!flank.arrived_early());
+    }
+
+    #[test]
+    fn joint_that_needs_no_flank_rests_in_the_middle() {
+        let (tables, mut flank) = (tables(), control(Stage::Touching));
+        let idle = ControlDemand { needs_no_flank: true, rests: true, ..demand(0.0, 0.0) };
+        // Half of the 1.5 s.
+        (0..749).for_each(|_| assert_eq!(flank.step(&tables, &state(), &idle), 0.0));
+        (0..2).for_each(|_| _ = flank.step(&tables, &state(), &idle));
+        assert_eq!(flank.step(&tables, &state(), &idle), -100.0 * HALF_GAP);
+        flank.step(&tables, &state(), &demand(1.0, 1.0));
+        assert_eq!(flank.unneeded, 0.0);
+    }
+
+    #[test]
+    fn reset_takes_the_flank_in_contact() {
+        let mut flank = FlankControl { impulse_deficit: 1.0, ..control(Stage::Crossing) };
+        flank.reset(&LoopState { contact: Some(Flank::Back), ..state() });
+        assert_eq!((flank.flank(), flank.stage(), flank.impulse_deficit), (Flank::Back, Stage::Touching, 0.0));
+        flank.reset(&open(1.0));
+        assert_eq!(flank.flank(), Flank::Back, "without contact the flank stays");
+    }
+
+    #[test]
+    fn undecided_spring_takes_the_far_flank_that_is_felt() {
+        let touched = |opening| {
+            let mut flank = control(Stage::Landing);
+            let far = LoopState { contact: Some(Flank::Back), ..open(opening) };
+            flank.step(&tables(), &far, &ControlDemand { is_impedance: true, ..demand(-0.01, -0.01) });
+            flank.flank()
+        };
+        assert_eq!([0.9, 1.1].map(touched), [Flank::Drive, Flank::Back]);
+    }
+}

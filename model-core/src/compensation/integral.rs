@@ -57,3 +57,40 @@ impl<T: Real> Integral<T> {
         self.add(tables, tables.law.back_calculation * (torque - self.torque));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    #[test]
+    fn integral_stays_within_the_motor_limit() {
+        let mut integral = Integral::new();
+        integral.add(&tables(), 25.0);
+        assert_eq!(integral.torque(), 10.0);
+        integral.add(&tables(), -25.0);
+        assert_eq!(integral.torque(), -10.0);
+    }
+
+    #[test]
+    fn sum_that_is_not_finite_is_ignored() {
+        let mut integral = Integral::new();
+        integral.add(&tables(), 1.0);
+        [f64::NAN, f64::INFINITY].iter().for_each(|torque| integral.add(&tables(), *torque));
+        assert_eq!(integral.torque(), 1.0);
+    }
+
+    #[test]
+    fn integral_decays_toward_a_torque_with_the_loop() {
+        let mut integral = Integral::new();
+        (0..100).for_each(|_| integral.decay_toward(&tables(), 5.0));
+        assert!((integral.torque() - 5.0 * (1.0 - f64::powi(0.99, 100))).abs() < 1e-9);
+    }
+
+    #[test]
+    fn motor_beyond_its_set_point_lowers_the_integral() {
+        let mut integral = Integral::new();
+        integral.integrate(&tables(), 1e-3, 0.0);
+        assert_eq!(integral.torque(), -4e-3);
+    }
+}

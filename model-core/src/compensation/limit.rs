@@ -70,3 +70,95 @@ fn static_limit<T: Real>(tables: &CompensationTables<T>, state: &LoopState<T>, s
     let reserve = room.abs() + swing.over(if room > least { room } else { least });
     clamp(limit - T::HALF * reserve, T::HALF * limit, limit)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+    use crate::observer::Estimates;
+
+    /// Returns a load model after a push at the link [N m].
+    fn pushed(torque: f64) -> LoadModel<f64> {
+        let mut estimates = Estimates::default();
+        (estimates.load_torque.value, estimates.load_torque.valid) = (torque, true);
+        let mut load = LoadModel::new();
+        load.update(&tables(), &estimates, &state(), true);
+        load
+    }
+
+    /// Returns the static torque that a law of 20 N m gets through the teeth in a state [N m].
+    fn largest(state: &LoopState<f64>) -> f64 {
+        let load = LoadModel::of_known(0.0, 0.0);
+        mesh_torque(&tables(), 0.0, limit_mesh_torque(&tables(), &load, state, 20.0, 8.0))
+    }
+
+    #[test]
+    fn unloaded_joint_passes_the_share_of_the_link() {
+        assert_eq!(mesh_torque(&tables(), 0.0, 4.0), 3.0);
+    }
+
+    #[test]
+    fn torque_equal_to_the_load_passes_whole() {
+        assert_eq!(mesh_torque(&tables(), 4.0, 4.0), 4.0);
+    }
+
+    #[test]
+    fn law_within_the_motor_limit_keeps_the_reserve() {
+        assert_eq!([-10.0, 0.0, 10.0].map(|torque| mesh_torque_limit(&tables(), torque)), [8.0; 3]);
+    }
+
+    #[test]
+    fn law_beyond_the_motor_limit_releases_the_reserve() {
+        assert_eq!(
+            [15.0, -15.0, 20.0, 30.0].map(|torque| mesh_torque_limit(&tables(), torque)),
+            [9.0, 9.0, 10.0, 10.0]
+        );
+    }
+
+    #[test]
+    fn torque_within_the_limit_is_unchanged() {
+        let load = LoadModel::of_known(0.0, 0.0);
+        assert_eq!(limit_mesh_torque(&tables(), &load, &state(), 4.0, 8.0), 4.0);
+    }
+
+    #[test]
+    fn teeth_just_met_get_half_the_limit() {
+        assert!((largest(&state()) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn teeth_at_the_limit_keep_the_limit() {
+        assert!((largest(&LoopState { mesh_torque: 8.0, ..state() }) - 8.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn torque_of_the_other_sign_is_limited_likewise() {
+        let load = LoadModel::of_known(0.0, 0.0);
+        let state = LoopState { motor_position: -HALF, gap: -HALF, ..state() };
+        let limited = limit_mesh_torque(&tables(), &load, &state, -20.0, 8.0);
+        assert!((mesh_torque(&tables(), 0.0, limited) + 4.0).abs() < 1e-12);
+    }
+
+    /// Half-gap of the state [rad].
+    const HALF: f64 = crate::compensation::test_bench::HALF_GAP;
+
+    #[test]
+    fn closing_motor_lowers_the_limit() {
+        let held = LoopState { mesh_torque: 6.0, ..state() };
+        let closing = LoopState { motor_speed: 0.05, ..held };
+        assert!(largest(&closing) < largest(&held) && largest(&closing) >= 4.0 - 1e-12);
+    }
+
+    #[test]
+    fn opening_motor_does_not_lower_the_limit() {
+        let held = LoopState { mesh_torque: 6.0, ..state() };
+        assert_eq!(largest(&LoopState { motor_speed: -0.05, ..held }), largest(&held));
+    }
+
+    #[test]
+    fn push_beyond_the_teeth_suspends_the_limit() {
+        let torque = |push| limit_mesh_torque(&tables(), &pushed(push), &state(), 20.0, 8.0);
+        assert!(torque(7.9) < 20.0);
+        assert_eq!(torque(8.1), 20.0);
+    }
+}

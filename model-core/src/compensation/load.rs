@@ -67,6 +67,14 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
+    /// Returns a model with a known gravity torque and friction [N m].
+    #[cfg(test)]
+    pub fn of_known(gravity_torque: T, friction: T) -> Self {
+        let mut load = Self::new();
+        (load.filter.gravity_torque, load.filter.friction) = (gravity_torque, friction);
+        load
+    }
+
     /// Records whether the motor's limit has cut torque off in this period.
     pub fn record_saturation(&mut self, tables: &CompensationTables<T>, is_cut: bool) {
         self.saturation = if is_cut { T::ONE } else { self.saturation * tables.switching.transient_left };
@@ -257,4 +265,126 @@ impl<T: Real> LoadModel<T> {
 /// True if a link at this speed is so slow that any part of its friction may act.
 fn creeps<T: Real>(speed: T) -> bool {
     speed < T::ONE && speed > -T::ONE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    /// Estimates with a load torque [N m].
+    fn measured(torque: f64) -> Estimates<f64> {
+        let mut estimates = Estimates::default();
+        (estimates.load_torque.value, estimates.load_torque.valid) = (torque, true);
+        estimates
+    }
+
+    /// State of a link that moves as asked [rad/s].
+    fn moving(speed: f64) -> LoopState<f64> {
+        LoopState { link_speed: speed, ..state() }
+    }
+
+    #[test]
+    fn gravity_torque_follows_a_load_at_rest() {
+        let mut load = LoadModel::new();
+        (0..2000).for_each(|_| load.update(&tables(), &measured(3.0), &state(), true));
+        assert!((load.gravity_torque() - 3.0).abs() < 1e-6 && load.friction() == 0.0);
+    }
+
+    #[test]
+    fn motion_both_ways_finds_the_friction() {
+        let mut load = LoadModel::new();
+        for period in 0..20_000 {
+            let direction = if (period / 500) % 2 == 0 { 1.0 } else { -1.0 };
+            load.update(&tables(), &measured(2.0 + direction), &moving(0.1 * direction), true);
+        }
+        assert!((load.gravity_torque() - 2.0).abs() < 0.1 && (load.friction() - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn invalid_load_changes_nothing() {
+        for (value, valid) in [(3.0, false), (f64::NAN, true), (f64::INFINITY, true)] {
+            let (mut load, mut estimates) = (LoadModel::of_known(1.0, 0.5), measured(value));
+            estimates.load_torque.valid = valid;
+            load.update(&tables(), &estimates, &state(), true);
+            assert_eq!((load.gravity_torque(), load.friction()), (1.0, 0.5));
+            assert!(!load.external_impact(&tables()));
+        }
+    }
+
+    #[test]
+    fn load_beyond_the_motor_counts_as_its_limit() {
+        let mut load = LoadModel::new();
+        (0..2000).for_each(|_| load.update(&tables(), &measured(50.0), &state(), true));
+        assert!((load.gravity_torque() - 10.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn push_beyond_the_teeth_is_an_impact_for_a_transient() {
+        let impact = |torque: f64, after: u32| {
+            let mut load = LoadModel::new();
+            load.update(&tables(), &measured(torque), &state(), true);
+            (0..after).for_each(|_| load.update(&tables(), &measured(0.0), &state(), true));
+            load.external_impact(&tables())
+        };
+        assert!(!impact(7.9, 0) && impact(8.1, 0) && impact(-8.1, 0));
+        assert!(impact(20.0, 80) && !impact(20.0, 100), "0.99^91 of 20 N m are 8 N m");
+        assert!(!impact(1e9, 100), "a push counts twice the motor's limit at most");
+    }
+
+    #[test]
+    fn unseen_link_hands_its_load_to_the_integral() {
+        let mut load = LoadModel::of_known(5.0, 0.0);
+        load.update(&tables(), &measured(5.0), &LoopState { link_seen: false, ..state() }, true);
+        assert!((load.gravity_torque() - 4.95).abs() < 1e-12);
+    }
+
+    #[test]
+    fn friction_has_the_sign_of_the_motion() {
+        let mut load = LoadModel::of_known(0.0, 2.0);
+        let friction = [0.02, -0.02, 0.005].map(|speed| {
+            load.estimate_speed(&tables(), &moving(speed));
+            load.friction_torque()
+        });
+        assert_eq!(friction, [2.0, -2.0, 1.0]);
+    }
+
+    #[test]
+    fn start_of_a_held_link_needs_its_friction() {
+        let start = |gravity_torque| LoadModel::of_known(gravity_torque, 1.0).start_torque(&tables());
+        // Friction and the uncertainty of 0.2 N m hold the link.
+        assert_eq!([0.0, 1.19, -1.19, 1.21].map(start), [1.4, 1.4, 1.4, 0.0]);
+    }
+
+    #[test]
+    fn open_teeth_leave_the_link_to_its_free_load() {
+        let mut load = LoadModel::of_known(1.0, 0.0);
+        let open = LoopState { teeth_open: true, ..moving(0.1) };
+        (0..500).for_each(|_| load.update(&tables(), &measured(3.0), &open, true));
+        assert!((load.free_load_torque() - 3.0).abs() < 1e-4);
+        assert_eq!(load.gravity_torque(), 1.0);
+        load.update(&tables(), &measured(3.0), &moving(0.1), true);
+        assert_eq!(load.free_load_torque(), load.gravity_torque() + load.friction_torque());
+    }
+
+    #[test]
+    fn cut_torque_keeps_the_friction() {
+        let friction = |is_cut| {
+            let mut load = LoadModel::of_known(0.0, 1.0);
+            load.record_saturation(&tables(), is_cut);
+            load.update(&tables(), &measured(5.0), &moving(0.1), true);
+            load.friction()
+        };
+        assert_eq!(friction(true), 1.0);
+        assert!(friction(false) > 1.0);
+    }
+
+    #[test]
+    fn integrated_error_stays_within_the_motor_limit() {
+        let mut load = LoadModel::of_known(9.999, 0.0);
+        load.integrate_error(&tables(), 1.0);
+        assert_eq!(load.gravity_torque(), 10.0);
+        load.integrate_error(&tables(), f64::NAN);
+        assert_eq!(load.gravity_torque(), 10.0);
+    }
 }

@@ -72,3 +72,69 @@ impl<T: Real> LoadFrictionFilter<T> {
         gravity_gain * innovation
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a filter after measurements of a gravity torque and a friction, one in each of the directions [N m].
+    fn measured(gravity_torque: f64, friction: f64, directions: &[f64]) -> LoadFrictionFilter<f64> {
+        let mut filter = LoadFrictionFilter::new(0.0, [100.0; 2]);
+        for direction in directions {
+            filter.correct(gravity_torque + friction * direction, *direction, 1e-6, 10.0);
+        }
+        filter
+    }
+
+    #[test]
+    fn motion_both_ways_separates_load_and_friction() {
+        let filter = measured(3.0, 1.0, &[1.0, -1.0]);
+        assert!((filter.gravity_torque - 3.0).abs() < 1e-4 && (filter.friction - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn motion_one_way_gives_the_sum_only() {
+        let filter = measured(3.0, 1.0, &[1.0; 10]);
+        assert!((filter.torque(1.0) - 4.0).abs() < 1e-4);
+        assert!((filter.gravity_torque - 2.0).abs() < 1e-4, "shared by the variances: {}", filter.gravity_torque);
+    }
+
+    #[test]
+    fn friction_never_becomes_negative() {
+        assert_eq!(measured(0.0, -2.0, &[1.0, -1.0, 1.0]).friction, 0.0);
+    }
+
+    #[test]
+    fn friction_stays_within_its_limit() {
+        assert_eq!(measured(0.0, 20.0, &[1.0, -1.0]).friction, 10.0);
+    }
+
+    #[test]
+    fn certain_state_ignores_a_measurement_without_noise() {
+        let mut filter = LoadFrictionFilter::new(1.0, [0.0; 2]);
+        assert_eq!(filter.correct(5.0, 1.0, 0.0, 10.0), 0.0);
+        assert_eq!((filter.gravity_torque, filter.friction), (0.0, 1.0));
+    }
+
+    #[test]
+    fn noise_that_is_not_finite_changes_nothing() {
+        for noise in [f64::NAN, f64::INFINITY] {
+            let mut filter = LoadFrictionFilter::new(1.0, [1.0; 2]);
+            assert_eq!(filter.correct(5.0, 1.0, noise, 10.0), 0.0);
+            assert_eq!((filter.gravity_torque, filter.friction), (0.0, 1.0));
+        }
+    }
+
+    #[test]
+    fn measurement_lowers_the_variance_of_its_direction() {
+        let filter = measured(3.0, 1.0, &[1.0]);
+        assert!(filter.variance(1.0) < 1e-5 && filter.variance(-1.0) > 100.0);
+    }
+
+    #[test]
+    fn predicted_variance_grows_by_both_states() {
+        let mut filter = LoadFrictionFilter::new(0.0, [1.0, 2.0]);
+        filter.predict([0.5, 0.25]);
+        assert_eq!(filter.variance(1.0), 3.75);
+    }
+}

@@ -200,3 +200,150 @@ fn gap_is_valid<T: Real>(estimates: &Estimates<T>, command: CommandRef<T>) -> bo
 pub(super) fn friction_direction<T: Real>(tables: &CompensationTables<T>, speed: T) -> T {
     clamp(tables.load.planned_friction_slope * speed, -T::ONE, T::ONE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::set_point::{ImpedancePoint, Motion};
+    use crate::compensation::test_bench::{state, tables};
+    use crate::observer::OutputFault;
+
+    /// Estimates of a joint that sees both shafts, with everything valid.
+    fn estimates() -> Estimates<f64> {
+        let mut estimates = Estimates { source: Source::Both, contact_valid: true, ..Estimates::default() };
+        (estimates.gap.valid, estimates.half_backlash.valid) = (true, true);
+        estimates.half_backlash.value = 2e-3;
+        estimates.compliance.value = 1e-3;
+        estimates
+    }
+
+    fn position(estimates: &Estimates<f64>) -> LoopState<f64> {
+        let now = &Motion::default();
+        LoopState::new(&tables(), estimates, 0.0, CommandRef::Position { now, ahead: None })
+    }
+
+    #[test]
+    fn valid_estimates_know_the_gap() {
+        let state = position(&estimates());
+        assert!(state.link_seen && state.gap_known);
+    }
+
+    #[test]
+    fn quantity_that_is_not_finite_hides_the_link() {
+        let spoils: [fn(&mut Estimates<f64>, f64); 9] = [
+            |estimates, value| estimates.link.fraction = value,
+            |estimates, value| estimates.link.speed = value,
+            |estimates, value| estimates.motor_lead = value,
+            |estimates, value| estimates.motor.speed = value,
+            |estimates, value| estimates.gap.value = value,
+            |estimates, value| estimates.flank_shift = value,
+            |estimates, value| estimates.torque_bias.value = value,
+            |estimates, value| estimates.motor_friction.value = value,
+            |estimates, value| estimates.mesh_torque.value = value,
+        ];
+        for (index, spoil) in spoils.iter().enumerate() {
+            for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut estimates = estimates();
+                spoil(&mut estimates, value);
+                let state = position(&estimates);
+                assert!(!state.link_seen && !state.gap_known, "quantity {index}: {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn infinities_of_opposite_sign_do_not_cancel() {
+        let state = LoopState { error: f64::INFINITY, gap: f64::NEG_INFINITY, ..state() };
+        assert!(!state.is_finite());
+    }
+
+    #[test]
+    fn motor_encoder_alone_does_not_see_the_link() {
+        assert!(!position(&Estimates { source: Source::MotorOnly(OutputFault::Absent), ..estimates() }).link_seen);
+    }
+
+    #[test]
+    fn invalid_gap_or_contact_is_not_known() {
+        let mut without_gap = estimates();
+        without_gap.gap.valid = false;
+        let without_contact = Estimates { contact_valid: false, ..estimates() };
+        for estimates in [without_gap, without_contact] {
+            let state = position(&estimates);
+            assert!(state.link_seen && !state.gap_known);
+        }
+    }
+
+    #[test]
+    fn impedance_mode_needs_a_valid_half_gap() {
+        let mut guessed = estimates();
+        guessed.half_backlash.valid = false;
+        let point = &ImpedancePoint::default();
+        assert!(position(&guessed).gap_known);
+        assert!(!LoopState::new(&tables(), &guessed, 0.0, CommandRef::Impedance(point)).gap_known);
+    }
+
+    #[test]
+    fn link_inertia_counts_within_its_bounds() {
+        let inertia = |ratio: f64, valid: bool| {
+            let mut estimates = estimates();
+            (estimates.link_inertia_ratio.value, estimates.link_inertia_ratio.valid) = (ratio, valid);
+            inertia(&tables(), &estimates)
+        };
+        assert_eq!([0.1, 2.0, 9.0].map(|ratio| inertia(ratio, true)), [1.75, 7.0, 13.0]);
+        assert_eq!(inertia(9.0, false), 4.0);
+    }
+
+    #[test]
+    fn compliance_counts_within_its_bounds() {
+        let stiffness = |compliance: f64| {
+            let mut estimates = estimates();
+            estimates.compliance.value = compliance;
+            stiffness(&tables(), &estimates)
+        };
+        assert_eq!([0.0, 1e-3, 1.0].map(stiffness), [4000.0, 1000.0, 250.0]);
+    }
+
+    #[test]
+    fn half_gap_counts_up_to_the_widest() {
+        let half_gap = |value: f64| {
+            let mut estimates = estimates();
+            estimates.half_backlash.value = value;
+            half_gap(&tables(), &estimates)
+        };
+        assert_eq!([-1.0, 2e-3, 1.0].map(half_gap), [0.0, 2e-3, 10e-3]);
+    }
+
+    #[test]
+    fn motor_far_from_the_link_is_bounded_to_twice_the_half_gap() {
+        let lead = |motor_lead| position(&Estimates { motor_lead, ..estimates() }).bounded_motor_lead();
+        assert_eq!([-1.0, 3e-3, 1.0].map(lead), [-4e-3, 3e-3, 4e-3]);
+    }
+
+    #[test]
+    fn losses_act_against_the_motion() {
+        let state = LoopState { losses: [0.5, 1.0], ..state() };
+        let loss = |speed: f64, mesh_torque: f64| state.loss_torque(&tables(), speed, mesh_torque);
+        // Driving losses of a tenth, driven losses of a fifth of the torque through the teeth.
+        assert_eq!([loss(1.0, 5.0), loss(-1.0, 5.0), loss(0.0, 5.0)], [2.0, -1.5, 0.5]);
+    }
+
+    #[test]
+    fn friction_direction_saturates() {
+        let direction = |speed: f64| friction_direction(&tables(), speed);
+        assert_eq!([-1.0, -5e-4, 0.0, 5e-4, 1.0].map(direction), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn motor_centred_in_its_gap_has_no_cogging_difference() {
+        let centred = LoopState { cogging: [0.3, 0.2], motor_angle: 0.37, bounded_motor_position: 0.0, ..state() };
+        assert_eq!(centred.cogging_difference(&tables()), 0.0);
+        let displaced = LoopState { bounded_motor_position: 5e-3, ..centred };
+        assert!(displaced.cogging_difference(&tables()) != 0.0);
+    }
+
+    #[test]
+    fn damper_opposes_a_motor_ahead_of_the_link() {
+        let state = LoopState { motor_speed: 0.3, link_speed: 0.1, transmission_error_speed: 0.1, ..state() };
+        assert!((state.damping_torque(&tables()) + 2.0).abs() < 1e-12);
+    }
+}

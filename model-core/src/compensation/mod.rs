@@ -46,6 +46,8 @@ mod slow_task;
 mod start_prediction;
 mod step;
 pub mod tables;
+#[cfg(test)]
+mod test_bench;
 mod thresholds;
 mod torque_swing;
 pub mod transitions;

@@ -251,3 +251,108 @@ fn decrease<T: Real>(value: T, by: T) -> T {
     let left = value - by;
     if left > T::ZERO { left } else { T::ZERO }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{HALF_GAP, state, tables};
+
+    fn input(planned: f64) -> MonitorInput<f64> {
+        MonitorInput { planned, load: 0.0, has_error: true, external_impact: false }
+    }
+
+    /// Returns the count after a flank change under a demand, load and granted square.
+    fn count(planned: f64, demand: f64, granted_square: f64) -> f64 {
+        let (tables, mut monitor) = (tables(), LoopMonitor::new(&tables()));
+        monitor.granted_square = granted_square;
+        monitor.count_change(&tables, &state(), Flank::Drive, planned, demand);
+        monitor.count_change(&tables, &state(), Flank::Back, 0.0, 0.0);
+        monitor.unexplained
+    }
+
+    #[test]
+    fn planned_change_counts_nothing() {
+        assert_eq!([count(0.051, 0.0, 0.0), count(0.049, 0.0, 0.0), count(-0.051, 0.0, 0.0)], [0.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn change_by_the_load_counts_an_eighth() {
+        assert_eq!([count(0.0, 0.051, 0.0), count(0.0, 0.049, 0.0)], [0.125, 1.0]);
+    }
+
+    #[test]
+    fn change_under_a_granted_error_counts_an_eighth() {
+        let calm = f64::powi(0.35 * HALF_GAP, 2);
+        assert_eq!([count(0.0, 0.0, 1.01 * calm), count(0.0, 0.0, 0.99 * calm)], [0.125, 1.0]);
+    }
+
+    #[test]
+    fn flank_in_use_at_first_counts_nothing() {
+        let mut monitor = LoopMonitor::new(&tables());
+        monitor.count_change(&tables(), &state(), Flank::Drive, 0.0, 0.0);
+        assert_eq!(monitor.unexplained, 0.0);
+    }
+
+    #[test]
+    fn more_than_four_changes_hunt() {
+        let hunts = |unexplained| {
+            let monitor = LoopMonitor { unexplained, ..LoopMonitor::new(&tables()) };
+            monitor.hunts(&tables(), &state(), &input(0.0), 0.0)
+        };
+        assert!(!hunts(4.0) && hunts(4.1));
+    }
+
+    #[test]
+    fn error_beyond_plain_control_hunts() {
+        let hunts = |error: f64, demand: f64| {
+            let monitor = LoopMonitor { mean_square: error * error, ..LoopMonitor::new(&tables()) };
+            monitor.hunts(&tables(), &state(), &input(0.0), demand)
+        };
+        assert!(!hunts(2.99e-3, 0.0) && hunts(3.01e-3, 0.0));
+        assert!(!hunts(3.01e-3, -1.0), "a demand of 1 N m permits another 0.25 mrad");
+    }
+
+    #[test]
+    fn pushed_link_is_never_calm() {
+        let left = |external_impact| {
+            let mut monitor = LoopMonitor { unexplained: 1.0, ..LoopMonitor::new(&tables()) };
+            monitor.decay_count(&tables(), &state(), &MonitorInput { external_impact, ..input(0.0) }, 3e-3);
+            monitor.unexplained
+        };
+        assert!((left(true) - 0.997).abs() < 1e-12 && (left(false) - 0.94).abs() < 1e-12);
+    }
+
+    #[test]
+    fn count_does_not_become_negative() {
+        assert_eq!((decrease(1.0, 2.0), decrease(2.0, 0.5)), (0.0, 1.5));
+    }
+
+    #[test]
+    fn each_trip_lasts_four_times_longer_up_to_the_longest() {
+        let (tables, mut monitor) = (tables(), LoopMonitor::new(&tables()));
+        let times = [(); 4].map(|()| {
+            monitor.trip(&tables);
+            monitor.remaining_trip
+        });
+        assert_eq!(times, [10.0, 40.0, 120.0, 120.0]);
+    }
+
+    #[test]
+    fn jump_of_the_set_point_is_granted() {
+        let granted = |jump: f64| {
+            let mut monitor = LoopMonitor { judged_time: 6.0, last_error: Some(0.0), ..LoopMonitor::new(&tables()) };
+            monitor.update_mean_square(&tables(), &LoopState { error: jump * HALF_GAP, ..state() });
+            monitor.granted_square
+        };
+        assert_eq!(granted(0.24), 0.0);
+        assert!((granted(-0.26) - f64::powi(0.26 * HALF_GAP, 2)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn load_that_is_no_number_is_not_judged() {
+        let mut monitor = LoopMonitor { unexplained: 9.0, ..LoopMonitor::new(&tables()) };
+        let spoilt = MonitorInput { load: f64::NAN, ..input(0.0) };
+        monitor.step(&tables(), &state(), &spoilt, Some(Flank::Drive));
+        assert!(!monitor.is_tripped() && monitor.load == [0.0; 2]);
+    }
+}

@@ -81,3 +81,40 @@ impl<T: Real> PayloadSwing<T> {
         self.side = side;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    /// Returns a detector after the load has changed sides, each time after a number of periods.
+    fn alternating(changes: u32, periods: u32) -> PayloadSwing<f64> {
+        let (tables, mut swing) = (tables(), PayloadSwing::new());
+        // A second without a swing, so that nothing may swing any more.
+        (0..1100).for_each(|_| swing.update(&tables, Some(0.0)));
+        for change in 0..=changes {
+            let load = if change % 2 == 0 { 6.0 } else { -6.0 };
+            (0..periods).for_each(|_| swing.update(&tables, Some(load)));
+        }
+        swing
+    }
+
+    #[test]
+    fn three_changes_are_a_swing() {
+        assert!(!alternating(2, 60).swings() && alternating(4, 60).swings());
+    }
+
+    #[test]
+    fn slow_changes_are_no_swing() {
+        assert!(!alternating(8, 200).swings());
+    }
+
+    #[test]
+    fn swing_is_remembered_for_a_second() {
+        let (tables, mut swing) = (tables(), alternating(4, 60));
+        (0..900).for_each(|_| swing.update(&tables, Some(-6.0)));
+        assert!(swing.swings());
+        (0..200).for_each(|_| swing.update(&tables, Some(-6.0)));
+        assert!(!swing.swings());
+    }
+}

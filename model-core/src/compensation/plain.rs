@@ -112,3 +112,79 @@ impl<T: Real> PlainControl<T> {
 pub(super) fn swinging_motor_damping<T: Real>(motor_damping: T) -> T {
     (T::ONE + PlainThresholds::<T>::VALUES.damping_growth) * motor_damping
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{HALF_GAP, state, tables};
+
+    fn unseen() -> LoopState<f64> {
+        LoopState { link_seen: false, gap_known: false, ..state() }
+    }
+
+    #[test]
+    fn motor_is_held_at_its_set_point() {
+        let state = LoopState { bounded_motor_position: 1e-3, ..unseen() };
+        let load = LoadModel::of_known(0.0, 0.0);
+        let torque = PlainControl::new().torque(&tables(), &load, &state, &Motion::default());
+        assert!((torque + 1.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pushed_link_keeps_half_of_the_remaining_damper() {
+        let mut estimates = crate::observer::Estimates::default();
+        (estimates.load_torque.value, estimates.load_torque.valid) = (9.0, true);
+        let mut load = LoadModel::new();
+        load.update(&tables(), &estimates, &state(), true);
+        let moving = LoopState { bounded_motor_position: 0.0, error_rate: 1.0, ..unseen() };
+        let torque = PlainControl::new().torque(&tables(), &load, &moving, &Motion::default());
+        // Half of 120 less 1.5 times 20 N m s/rad; the integral takes over the load.
+        assert!((torque - 45.0 - 0.01 * load.gravity_torque()).abs() < 1e-9, "{torque}");
+    }
+
+    #[test]
+    fn contact_gives_the_distance_of_motor_and_link() {
+        let mut plain = PlainControl::new();
+        (0..4000).for_each(|_| plain.update(&tables(), &state(), 0.0));
+        assert!((plain.motor_lead - HALF_GAP).abs() < 1e-6);
+    }
+
+    #[test]
+    fn open_teeth_and_fast_links_give_no_distance() {
+        let tables = tables();
+        // A quarter of the half-gap in a time constant of 0.1 s: 5 mrad/s.
+        for (state, follows) in [
+            (LoopState { contact: None, ..state() }, false),
+            (LoopState { error_rate: 5.1e-3, ..state() }, false),
+            (LoopState { error_rate: -4.9e-3, ..state() }, true),
+        ] {
+            let mut plain = PlainControl::new();
+            plain.update(&tables, &state, 0.0);
+            assert_eq!(plain.motor_lead != 0.0, follows);
+        }
+    }
+
+    #[test]
+    fn unseen_link_shifts_the_motor_to_the_expected_flank() {
+        let (tables, load, mut plain) = (tables(), LoadModel::of_known(0.0, 0.0), PlainControl::new());
+        let now = Motion { acceleration: -1.0, ..Motion::default() };
+        plain.torque(&tables, &load, &unseen(), &now);
+        (0..2000).for_each(|_| plain.update(&tables, &unseen(), 0.0));
+        assert!((plain.motor_lead + HALF_GAP).abs() < 1e-6);
+    }
+
+    #[test]
+    fn impedance_spring_acts_on_the_link_while_it_is_seen() {
+        let point = ImpedancePoint { stiffness: 100.0, ..ImpedancePoint::default() };
+        let seen = LoopState { error: 0.02, bounded_motor_position: -0.03, ..state() };
+        let torque = |link_seen| PlainControl::new().impedance_torque(&LoopState { link_seen, ..seen }, &point);
+        assert_eq!((torque(true), torque(false)), (2.0, 3.0));
+    }
+
+    #[test]
+    fn position_that_is_no_number_is_forgotten() {
+        let mut plain = PlainControl::new();
+        plain.update(&tables(), &LoopState { bounded_motor_position: f64::NAN, ..state() }, 0.0);
+        assert_eq!(plain.motor_lead, 0.0);
+    }
+}

@@ -365,3 +365,146 @@ fn planned_demand<T: Real>(
     };
     tables.body.load_inertia * (now.acceleration + part * trend.acceleration) + load.planned_friction(tables, speed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{HALF_GAP, state, tables};
+
+    fn motion(speed: f64, acceleration: f64) -> Motion<f64> {
+        Motion { speed, acceleration, ..Motion::default() }
+    }
+
+    fn unloaded() -> LoadModel<f64> {
+        LoadModel::of_known(0.0, 0.0)
+    }
+
+    /// First dead band in the state [rad].
+    const FIRST: f64 = 0.05 * HALF_GAP;
+
+    #[test]
+    fn dead_band_opens_within_a_second_of_rest() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        let deadbands = [500, 499, 10].map(|periods| {
+            (0..periods).for_each(|_| law.update_deadband(&tables, true, true, 0.0, HALF_GAP));
+            law.deadband / FIRST
+        });
+        assert!((deadbands[0] - 0.5).abs() < 1e-9 && deadbands[1] < 1.0 && deadbands[2] == 1.0, "{deadbands:?}");
+    }
+
+    #[test]
+    fn dead_band_closes_with_a_load_or_a_motion() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        for (rests, unloaded) in [(true, false), (false, false)] {
+            law.deadband = FIRST;
+            law.update_deadband(&tables, rests, unloaded, 0.0, HALF_GAP);
+            assert_eq!(law.deadband, 0.0);
+        }
+    }
+
+    #[test]
+    fn requests_for_both_flanks_widen_the_dead_band() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        let deadbands = [1.0, -1.0, 1.0, -1.0, 1.0].map(|requested| {
+            law.update_deadband(&tables, true, true, requested, HALF_GAP);
+            (law.deadband / FIRST).round()
+        });
+        assert_eq!(deadbands, [0.0, 1.0, 3.0, 7.0, 10.0], "at most half of the half-gap");
+    }
+
+    #[test]
+    fn requests_for_one_flank_do_not_widen_the_dead_band() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        (0..5).for_each(|_| law.update_deadband(&tables, true, true, 1.0, HALF_GAP));
+        assert!(law.deadband < 0.01 * FIRST);
+    }
+
+    #[test]
+    fn late_request_does_not_widen_the_dead_band() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        law.update_deadband(&tables, true, true, 1.0, HALF_GAP);
+        (0..1600).for_each(|_| law.update_deadband(&tables, true, true, 0.0, HALF_GAP));
+        law.update_deadband(&tables, true, true, -1.0, HALF_GAP);
+        assert!((law.deadband / FIRST - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn error_within_the_dead_band_asks_for_nothing() {
+        let law = PositionLaw { deadband: FIRST, ..PositionLaw::new() };
+        let excess = |error: f64| law.error_beyond_deadband(&LoopState { error, ..state() });
+        assert_eq!([excess(FIRST), excess(-FIRST), excess(0.0)], [0.0; 3]);
+        assert!((excess(-3.0 * FIRST) + 2.0 * FIRST).abs() < 1e-15);
+    }
+
+    #[test]
+    fn law_of_a_still_joint_is_its_spring() {
+        let (tables, state) = (tables(), LoopState { error: 1e-3, mesh_torque: 1.0, ..state() });
+        let demand = PositionLaw::new().demand(&tables, &unloaded(), &state, &motion(0.0, 0.0), None);
+        assert!((demand.law_torque - 1.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn law_holds_the_load() {
+        let (tables, state) = (tables(), LoopState { mesh_torque: 3.0, ..state() });
+        let load = LoadModel::of_known(3.0, 0.0);
+        let demand = PositionLaw::new().demand(&tables, &load, &state, &motion(0.0, 0.0), None);
+        assert!((demand.law_torque - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn damper_opposes_a_link_faster_than_its_set_point() {
+        let (tables, state) = (tables(), LoopState { error_rate: -0.01, mesh_torque: -1.0, ..state() });
+        let demand = PositionLaw::new().demand(&tables, &unloaded(), &state, &motion(0.0, 0.0), None);
+        assert!((demand.law_torque + 1.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn previewed_reversal_is_demanded_ahead() {
+        let tables = tables();
+        let demand = |ahead: Option<&Motion<f64>>| {
+            PositionLaw::new().demand(&tables, &unloaded(), &state(), &motion(0.1, 1.0), ahead)
+        };
+        let [blind, previewed] = [demand(None), demand(Some(&motion(0.1, -1.0)))];
+        assert!(blind.after_crossing > 0.0 && previewed.after_crossing < 0.0);
+        assert_eq!(blind.now, previewed.now);
+    }
+
+    #[test]
+    fn acceleration_ahead_stays_within_the_largest_since_the_rest() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        let trend = |previewed| SetPointTrend { speed: 0.0, acceleration: -1.0, time: 1e-3, previewed };
+        assert_eq!(law.motion_ahead(&tables, &motion(0.1, 2.0), &trend(false), false).ahead, -2.0);
+        assert_eq!(law.motion_ahead(&tables, &motion(0.1, 2.0), &trend(true), false).ahead, 2.0 - 22.0);
+        law.motion_ahead(&tables, &motion(0.0, 0.0), &trend(false), true);
+        assert_eq!(law.peak_acceleration, 0.0);
+    }
+
+    #[test]
+    fn measured_demand_follows_slower_with_a_preview() {
+        let followed = |previewed| {
+            let mut law = PositionLaw::new();
+            let feedback = Feedback { error: 0.0, approach: None, spring: 0.1, damper: 0.0 };
+            law.follow_measured_demand(&tables(), &unloaded(), 0.0, &feedback, previewed);
+            law.measured_demand
+        };
+        assert!((followed(false) - 0.003).abs() < 1e-12 && (followed(true) - 0.002).abs() < 1e-12);
+    }
+
+    #[test]
+    fn large_change_of_the_measured_demand_is_followed_by_half() {
+        let mut law = PositionLaw::new();
+        let feedback = Feedback { error: 0.0, approach: None, spring: 8.0, damper: 0.0 };
+        law.follow_measured_demand(&tables(), &unloaded(), 0.0, &feedback, false);
+        assert_eq!(law.measured_demand, 4.0);
+    }
+
+    #[test]
+    fn loaded_joint_at_rest_keeps_its_flank() {
+        let rests_unloaded = |gravity_torque: f64| {
+            let load = LoadModel::of_known(gravity_torque, 0.0);
+            let demand = PositionLaw::new().demand(&tables(), &load, &state(), &motion(0.0, 0.0), None);
+            (demand.rests, demand.rests_unloaded)
+        };
+        assert_eq!([0.19, 0.21].map(rests_unloaded), [(true, true), (true, false)]);
+    }
+}

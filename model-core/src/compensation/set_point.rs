@@ -158,3 +158,19 @@ pub struct ControlOutput<T: Real> {
     /// link does not follow its set-point.
     pub short_of_torque: bool,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn difference_counts_whole_turns() {
+        let position = Position { turns: -2, fraction: 0.25 };
+        assert_eq!(position.difference(3, 0.5), -5.25);
+    }
+
+    #[test]
+    fn difference_at_the_ends_of_the_turns_does_not_overflow() {
+        assert_eq!(Position { turns: i32::MAX, fraction: 0.0 }.difference(i32::MIN, 0.0), 4_294_967_295.0);
+    }
+}

@@ -71,3 +71,66 @@ impl<T: Real> SetPointStream<T> {
         missed || self.hold_time >= tables.law.longest_hold
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::set_point::Position;
+    use crate::compensation::test_bench::tables;
+
+    /// Returns a stream of set-points with a torque [N m], each held for a number of periods.
+    fn stream(torques: &[f64], periods: u32) -> SetPointStream<f64> {
+        let mut stream = SetPointStream::default();
+        for torque in torques {
+            let point = ImpedancePoint { torque: *torque, speed: 1.0, ..ImpedancePoint::default() };
+            (0..periods).for_each(|_| stream.step(&tables(), &point));
+        }
+        stream
+    }
+
+    #[test]
+    fn first_set_point_has_no_rate() {
+        assert_eq!(stream(&[5.0], 1).torque_rate(), 0.0);
+    }
+
+    #[test]
+    fn change_of_torque_counts_by_half() {
+        // 1 N m in two periods.
+        assert_eq!(stream(&[0.0, 1.0], 2).torque_rate(), 250.0);
+    }
+
+    #[test]
+    fn set_point_held_twice_its_interval_rests() {
+        let mut stream = stream(&[0.0, 1.0], 2);
+        let point = ImpedancePoint { torque: 1.0, speed: 1.0, ..ImpedancePoint::default() };
+        assert!(!stream.rests(&tables()));
+        (0..3).for_each(|_| stream.step(&tables(), &point));
+        assert!(!stream.rests(&tables()), "held for exactly twice the interval");
+        stream.step(&tables(), &point);
+        assert!(stream.rests(&tables()));
+        assert_eq!((stream.torque_rate(), stream.extrapolation_time(&tables())), (0.0, 0.0));
+    }
+
+    #[test]
+    fn set_point_held_for_the_longest_time_rests() {
+        assert!(!stream(&[1.0], 5).rests(&tables()) && stream(&[1.0], 6).rests(&tables()));
+    }
+
+    #[test]
+    fn moving_point_is_extrapolated_beyond_the_mean_hold() {
+        let mut stream = stream(&[0.0, 1.0], 2);
+        let point = ImpedancePoint { torque: 1.0, speed: 1.0, ..ImpedancePoint::default() };
+        stream.step(&tables(), &point);
+        assert!((stream.extrapolation_time(&tables()) - 1e-3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn direction_without_speed_is_that_of_the_last_travel() {
+        let mut stream = SetPointStream::default();
+        for fraction in [0.0, -0.25] {
+            let position = Position { turns: 0, fraction };
+            stream.step(&tables(), &ImpedancePoint { position, ..ImpedancePoint::default() });
+        }
+        assert_eq!(stream.direction(), -0.25);
+    }
+}

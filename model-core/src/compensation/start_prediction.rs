@@ -74,3 +74,63 @@ impl<T: Real> StartPrediction<T> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    /// Time after which friction holds the link [periods].
+    const STANDSTILL: u32 = 375;
+
+    /// Moves in a direction, then rests.
+    fn move_and_rest(start: &mut StartPrediction<f64>, direction: f64, periods: u32) -> Option<Flank> {
+        start.step(&tables(), &state(), direction, false);
+        (0..periods).fold(None, |_, _| start.step(&tables(), &state(), 0.0, true))
+    }
+
+    #[test]
+    fn joint_that_never_moved_predicts_nothing() {
+        let mut start = StartPrediction::new();
+        (0..2 * STANDSTILL).for_each(|_| assert_eq!(start.step(&tables(), &state(), 0.0, true), None));
+    }
+
+    #[test]
+    fn first_motion_predicts_nothing() {
+        assert_eq!(move_and_rest(&mut StartPrediction::new(), 1.0, STANDSTILL + 1), None);
+    }
+
+    #[test]
+    fn motion_that_went_on_is_expected_to_go_on() {
+        let mut start = StartPrediction::new();
+        move_and_rest(&mut start, 1.0, STANDSTILL + 1);
+        assert_eq!(move_and_rest(&mut start, 1.0, STANDSTILL + 1), Some(Flank::Drive));
+    }
+
+    #[test]
+    fn motion_that_reversed_is_expected_to_reverse() {
+        let mut start = StartPrediction::new();
+        move_and_rest(&mut start, 1.0, STANDSTILL + 1);
+        assert_eq!(move_and_rest(&mut start, -1.0, STANDSTILL + 1), Some(Flank::Drive));
+    }
+
+    #[test]
+    fn link_is_held_after_the_standstill() {
+        let mut start = StartPrediction::new();
+        move_and_rest(&mut start, 1.0, STANDSTILL - 2);
+        assert!(!start.friction_holds(&tables()));
+        (0..4).for_each(|_| _ = start.step(&tables(), &state(), 0.0, true));
+        assert!(start.friction_holds(&tables()));
+    }
+
+    #[test]
+    fn travel_beyond_an_eighth_of_the_half_gap_restarts_the_standstill() {
+        for (travel, holds) in [(0.12, true), (0.13, false)] {
+            let mut start = StartPrediction::new();
+            move_and_rest(&mut start, 1.0, STANDSTILL + 1);
+            let moved = LoopState { error: travel * state().half_gap, ..state() };
+            start.step(&tables(), &moved, 0.0, true);
+            assert_eq!(start.friction_holds(&tables()), holds, "{travel}");
+        }
+    }
+}

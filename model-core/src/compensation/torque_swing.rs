@@ -38,3 +38,44 @@ impl<T: Real> TorqueSwing<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    /// Returns true if a torque swings after it was `first`, zero for some periods, and `last` [N m].
+    fn swings(first: f64, periods: u32, last: f64) -> bool {
+        let mut swing = TorqueSwing::new();
+        swing.update(&tables(), first, 1.0);
+        (0..periods).for_each(|_| swing.update(&tables(), 0.0, 1.0));
+        swing.update(&tables(), last, 1.0);
+        swing.swings()
+    }
+
+    #[test]
+    fn large_torque_on_both_sides_swings() {
+        assert!(swings(6.0, 5, -6.0) && swings(-6.0, 5, 6.0));
+    }
+
+    #[test]
+    fn large_torque_on_one_side_does_not_swing() {
+        assert!(!swings(6.0, 5, 6.0));
+    }
+
+    #[test]
+    fn torque_at_half_the_limit_is_not_large() {
+        assert!(!swings(5.0, 0, -5.0) && !swings(5.1, 0, -5.0) && swings(5.1, 0, -5.1));
+    }
+
+    #[test]
+    fn change_within_a_quarter_time_constant_swings() {
+        // The time constant of the loop is a hundred periods.
+        assert!(swings(6.0, 24, -6.0) && !swings(6.0, 26, -6.0));
+    }
+
+    #[test]
+    fn torque_that_is_no_number_does_not_swing() {
+        assert!(!swings(f64::NAN, 0, -6.0));
+    }
+}

@@ -630,4 +630,12 @@ mod tests {
         };
         assert_eq!([0.9, 1.1].map(touched), [Flank::Drive, Flank::Back]);
     }
+
+    #[test]
+    fn landing_motor_slower_than_half_the_landing_speed_is_stopped() {
+        let flank = FlankControl { elapsed: 20e-3, landing_opening: 0.25 * HALF_GAP, ..control(Stage::Landing) };
+        // Half of 0.02 rad/s for 20 ms: a tenth of the half-gap.
+        let stopped = |opening| flank.stops_the_motor(&tables(), &open(0.2), opening * HALF_GAP);
+        assert!(stopped(0.16) && !stopped(0.14));
+    }
 }

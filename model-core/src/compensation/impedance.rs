@@ -66,3 +66,45 @@ impl<T: Real> ImpedanceLaw<T> {
         ControlDemand { expected_start_torque, ..ControlDemand::new(tables, load, state, law, demand, true) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    fn demand(point: &ImpedancePoint<f64>, state: &LoopState<f64>) -> ControlDemand<f64> {
+        ImpedanceLaw::new().demand(&tables(), &LoadModel::of_known(0.0, 0.0), state, point)
+    }
+
+    #[test]
+    fn law_is_spring_damper_and_torque() {
+        let point = ImpedancePoint { torque: 1.0, stiffness: 100.0, damping: 4.0, speed: 0.1, ..Default::default() };
+        let state = LoopState { error: 0.02, motor_speed: 0.3, link_speed: 0.3, ..state() };
+        assert!((demand(&point, &state).law_torque - (1.0 + 2.0 - 0.8)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn spring_is_cut_at_the_motor_limit() {
+        let point = ImpedancePoint { stiffness: 1e6, ..Default::default() };
+        assert_eq!(demand(&point, &LoopState { error: -1.0, ..state() }).law_torque, -10.0);
+    }
+
+    #[test]
+    fn tenth_of_the_motor_damper_stays() {
+        let state = LoopState { motor_speed: 0.1, ..state() };
+        assert!((demand(&ImpedancePoint::default(), &state).law_torque + 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn demand_is_the_share_of_the_link() {
+        let point = ImpedancePoint { torque: 4.0, ..Default::default() };
+        let demand = demand(&point, &state());
+        assert!(demand.is_impedance && demand.now == 3.0);
+    }
+
+    #[test]
+    fn error_that_is_no_number_is_not_finite() {
+        let point = ImpedancePoint { stiffness: 100.0, ..Default::default() };
+        assert!(!demand(&point, &LoopState { error: f64::NAN, ..state() }).is_finite());
+    }
+}

@@ -212,3 +212,101 @@ impl<T: Real> BacklashInverse<T> {
         self.demand.estimate(tables, torque);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{HALF_GAP, state, tables};
+
+    fn accelerated(acceleration: f64) -> Motion<f64> {
+        Motion { acceleration, ..Motion::default() }
+    }
+
+    #[test]
+    fn demand_that_presses_a_flank_selects_it() {
+        let share = |acceleration| {
+            let mut inverse = BacklashInverse::new(&tables());
+            inverse.update_edges(&tables(), &state(), &accelerated(acceleration));
+            inverse.share
+        };
+        assert_eq!([2.0, -2.0].map(share), [1.0, -1.0]);
+    }
+
+    #[test]
+    fn demand_about_zero_keeps_the_flank() {
+        let mut inverse = BacklashInverse { share: 1.0, ..BacklashInverse::new(&tables()) };
+        [0.01, -0.01, 0.0].iter().for_each(|by| inverse.update_edges(&tables(), &state(), &accelerated(*by)));
+        assert!(inverse.share > 0.98);
+    }
+
+    /// Presses the drive flank by an acceleration of 2 rad/s^2 for a number of turns of the slow tasks.
+    fn pressed(turns: u32, torque: f64) -> BacklashInverse<f64> {
+        let mut inverse = BacklashInverse::new(&tables());
+        for _ in 0..turns {
+            inverse.update_edges(&tables(), &state(), &accelerated(2.0));
+            inverse.estimate(&tables(), torque);
+        }
+        inverse
+    }
+
+    #[test]
+    fn pressed_flank_shows_its_edge_after_two_time_constants() {
+        assert_eq!(pressed(67, 8.0).edges, [None; 2]);
+        let [drive, back] = pressed(120, 8.0).edges;
+        assert!(drive.is_some_and(|edge| (edge - (HALF_GAP - 6.0 / 1000.0)).abs() < 1e-4) && back.is_none());
+    }
+
+    #[test]
+    fn torque_that_does_not_reach_the_teeth_shows_no_edge() {
+        assert_eq!(pressed(500, 2.0).edges, [None; 2]);
+    }
+
+    #[test]
+    fn known_gap_is_inverted_by_three_quarters() {
+        let target = |share| BacklashInverse { share, ..BacklashInverse::new(&tables()) }.target_shift(&state(), 0.05);
+        assert_eq!([1.0, 0.0, -1.0].map(target), [0.75 * HALF_GAP, 0.0, -0.75 * HALF_GAP]);
+    }
+
+    #[test]
+    fn unknown_gap_holds_the_motor_where_it_stands() {
+        let unknown = LoopState { half_gap_known: false, ..state() };
+        let inverse = BacklashInverse { share: 1.0, ..BacklashInverse::new(&tables()) };
+        assert_eq!(inverse.target_shift(&unknown, 0.05), 0.05);
+    }
+
+    #[test]
+    fn single_edge_is_inverted_whole() {
+        let unknown = LoopState { half_gap_known: false, ..state() };
+        let edges = [Some(0.01), None];
+        let target = |share| BacklashInverse { share, edges, ..BacklashInverse::new(&tables()) };
+        let [drive, back] = [1.0, -1.0].map(|share| target(share).target_shift(&unknown, 0.05));
+        assert!((drive - 0.01).abs() < 1e-15 && (back - (0.01 - 2.0 * HALF_GAP)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn link_beyond_half_the_half_gap_has_left_its_flank() {
+        let left = |travel: f64, has_settled: bool| {
+            let edges = [Some(HALF_GAP), None];
+            let inverse = BacklashInverse { share: 1.0, edges, has_settled, ..BacklashInverse::new(&tables()) };
+            let by = travel * HALF_GAP;
+            inverse.left_towards(&LoopState { motor_lead: HALF_GAP - by, error: -by, ..state() })
+        };
+        assert_eq!([left(0.49, true), left(0.51, true), left(0.51, false)], [None, Some(-1.0), None]);
+    }
+
+    #[test]
+    fn idle_inverse_follows_the_motor() {
+        let mut inverse = BacklashInverse::new(&tables());
+        inverse.update_integral(&tables(), &state(), None);
+        assert_eq!((inverse.shift, inverse.position_error(&state())), ([HALF_GAP, 0.0], 0.0));
+    }
+
+    #[test]
+    fn reset_forgets_the_edges_only() {
+        let mut inverse = pressed(120, 8.0);
+        let gravity_torque = inverse.demand.gravity_torque();
+        inverse.reset_edges();
+        assert_eq!((inverse.edges, inverse.share), ([None; 2], 0.0));
+        assert_eq!(inverse.demand.gravity_torque(), gravity_torque);
+    }
+}

@@ -387,4 +387,29 @@ mod tests {
         load.integrate_error(&tables(), f64::NAN);
         assert_eq!(load.gravity_torque(), 10.0);
     }
+
+    #[test]
+    fn link_within_the_noise_of_its_speed_still_creeps() {
+        let friction = |speed: f64| {
+            let mut load = LoadModel::of_known(0.0, 1.0);
+            load.update(&tables(), &measured(5.0), &moving(0.0), true);
+            load.update(&tables(), &measured(5.0), &moving(speed), true);
+            load.friction()
+        };
+        // Three times 0.01 rad/s.
+        assert_eq!(friction(0.029), 1.0);
+        assert!(friction(0.031) != 1.0);
+    }
+
+    #[test]
+    fn load_that_may_swing_is_followed_slower() {
+        let followed = |acts: bool| {
+            let mut load = LoadModel::of_known(0.0, 0.0);
+            // Only a load that is fed forward can be shown not to swing.
+            (0..1100).for_each(|_| load.update(&tables(), &measured(0.0), &state(), acts));
+            load.update(&tables(), &measured(1.0), &state(), acts);
+            load.gravity_torque()
+        };
+        assert!((followed(true) - 0.3).abs() < 1e-9 && (followed(false) - 0.3 / 8.0).abs() < 1e-9);
+    }
 }

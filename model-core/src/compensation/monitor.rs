@@ -355,4 +355,31 @@ mod tests {
         monitor.step(&tables(), &state(), &spoilt, Some(Flank::Drive));
         assert!(!monitor.is_tripped() && monitor.load == [0.0; 2]);
     }
+
+    #[test]
+    fn error_at_takeover_is_granted() {
+        let granted = |judged_time| {
+            let mut monitor = LoopMonitor { judged_time, ..LoopMonitor::new(&tables()) };
+            monitor.update_mean_square(&tables(), &LoopState { error: 1e-2, ..state() });
+            monitor.granted_square
+        };
+        assert_eq!([granted(5.99), granted(6.01)], [1e-4, 0.0]);
+    }
+
+    #[test]
+    fn worst_error_of_plain_control_halves_in_1400_ms() {
+        let mut monitor = LoopMonitor { worst_error: 1.0, ..LoopMonitor::new(&tables()) };
+        (0..462).for_each(|_| monitor.step(&tables(), &state(), &input(0.0), None));
+        assert!((monitor.worst_error - 0.5).abs() < 1e-2, "{}", monitor.worst_error);
+    }
+
+    #[test]
+    fn tripped_monitor_retries_after_its_time() {
+        let (tables, mut monitor) = (tables(), LoopMonitor::new(&tables()));
+        monitor.trip(&tables);
+        (0..3332).for_each(|_| monitor.step(&tables, &state(), &input(0.0), None));
+        assert!(monitor.is_tripped());
+        (0..3).for_each(|_| monitor.step(&tables, &state(), &input(0.0), None));
+        assert!(!monitor.is_tripped());
+    }
 }

@@ -507,4 +507,23 @@ mod tests {
         };
         assert_eq!([0.19, 0.21].map(rests_unloaded), [(true, true), (true, false)]);
     }
+
+    #[test]
+    fn law_exceeds_the_motor_limit_only_under_a_push() {
+        let mut estimates = crate::observer::Estimates::default();
+        (estimates.load_torque.value, estimates.load_torque.valid) = (9.0, true);
+        let mut pushed = LoadModel::of_known(0.0, 0.0);
+        pushed.update(&tables(), &estimates, &state(), true);
+        let held = LoopState { mesh_torque: 8.0, ..state() };
+        let torque = |load: &LoadModel<f64>| law_torque(&tables(), load, &held, 0.0, 50.0).motor;
+        assert!(torque(&unloaded()) <= 10.0 + 1e-12);
+        assert_eq!(torque(&pushed), 12.5);
+    }
+
+    #[test]
+    fn damper_on_the_motor_is_added_after_the_limit() {
+        let closing = LoopState { mesh_torque: 8.0, motor_speed: 0.1, ..state() };
+        let torque = law_torque(&tables(), &unloaded(), &closing, 0.0, 50.0);
+        assert!(torque.motor < 8.7, "{}", torque.motor);
+    }
 }

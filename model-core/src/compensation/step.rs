@@ -265,3 +265,65 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use parameters::ContactState;
+
+    use super::*;
+    use crate::compensation::set_point::Motion;
+    use crate::compensation::test_bench::tables;
+    use crate::observer::Source;
+
+    /// Estimates of a joint that touches its drive flank.
+    fn estimates() -> Estimates<f64> {
+        let mut estimates = Estimates { source: Source::Both, contact_valid: true, ..Estimates::default() };
+        estimates.reported_contact = ContactState::DriveSide;
+        (estimates.gap.valid, estimates.half_backlash.valid) = (true, true);
+        (estimates.half_backlash.value, estimates.compliance.value) = (2e-3, 1e-3);
+        // The gap coordinate is a deflection of both meshes, twice the travel of the link.
+        (estimates.gap.value, estimates.motor_lead) = (4e-3, 2e-3);
+        estimates
+    }
+
+    fn command(acceleration: f64) -> Command<f64> {
+        Command::Position { now: Motion { acceleration, ..Motion::default() }, ahead: None }
+    }
+
+    #[test]
+    fn unknown_motor_gives_no_torque() {
+        let tables = tables();
+        let output = Compensation::new(&tables).step(&Estimates::default(), &command(1.0));
+        assert_eq!((output.torque, output.stage, output.flank), (0.0, Stage::Off, None));
+    }
+
+    #[test]
+    fn trust_grows_to_one_and_falls_with_the_gap() {
+        let tables = tables();
+        let mut compensation = Compensation::new(&tables);
+        let first = compensation.step(&estimates(), &command(0.0));
+        assert_eq!((first.trust, first.stage), (0.1, Stage::Touching));
+        let last = (0..12).fold(first, |_, _| compensation.step(&estimates(), &command(0.0)));
+        assert_eq!(last.trust, 1.0);
+        let mut blind = estimates();
+        blind.gap.valid = false;
+        assert!((compensation.step(&blind, &command(0.0)).trust - 0.9).abs() < 1e-12);
+    }
+
+    #[test]
+    fn torque_is_cut_at_the_motor_limit() {
+        let tables = tables();
+        let output = Compensation::new(&tables).step(&estimates(), &command(100.0));
+        assert_eq!(output.torque, 10.0 * (1.0 / 6.0));
+        assert!(output.short_of_torque);
+    }
+
+    #[test]
+    fn set_point_that_is_not_finite_gives_no_torque() {
+        let tables = tables();
+        for acceleration in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let output = Compensation::new(&tables).step(&estimates(), &command(acceleration));
+            assert!(output.torque.is_finite() && output.demand == 0.0, "{acceleration}: {}", output.torque);
+        }
+    }
+}

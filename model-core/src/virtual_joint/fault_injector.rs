@@ -167,3 +167,117 @@ impl<T: Real> ActiveFault<T> {
         (splitmix64(&mut self.random) >> 32) as u32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::virtual_joint::tables::{CurrentLoopTable, EncoderErrorTable, FrictionTable, encoder_phase};
+
+    /// Counts of an encoder's turn.
+    const TURN: u32 = 4096;
+
+    fn table() -> SurroundingsTable<f32> {
+        let encoder = EncoderErrorTable { turn: TURN, errors: [0.0; 2], lag: 0.0, phase: encoder_phase(TURN.into()) };
+        let friction = FrictionTable { coulomb: 0.0, viscous: 0.0, rise: 0.0, per_speed: 0.0, stop: 0.0 };
+        SurroundingsTable {
+            period: 1e-3,
+            clock_ticks: 1,
+            turn: core::f32::consts::TAU,
+            ratio: [6, 1],
+            gear: 6.0,
+            units_per_radian: 1.0,
+            motor_rate: [0.0; 3],
+            link_rate: [0.0; 3],
+            current: CurrentLoopTable { delay: 0, rise: 1.0, lacking: 0.0, gain: 1.0, limit: 2.0 },
+            cogging_torque: 0.0,
+            cogging_periods: 0,
+            motor_friction: friction.clone(),
+            load_friction: friction,
+            losses: [0.0; 2],
+            half_backlash: [0.0; 5],
+            sun_torque: 0.0,
+            to_link: [0.0; 3],
+            weight: 0.0,
+            encoders: [encoder.clone(), encoder],
+        }
+    }
+
+    fn samples(motor: u32, link: u32) -> Samples<f32> {
+        let reading = |counts| Reading { counts, ..Reading::default() };
+        Samples { motor: reading(motor), output: Some(reading(link)), ..Samples::default() }
+    }
+
+    /// Returns the link's counts in the periods of a fault from period 1 to 3, while the link turns by 10 counts.
+    fn link_counts(kind: FaultKind<FixedPoint<f32>>) -> [Option<u32>; 5] {
+        let mut faults = FaultInjector::default();
+        assert!(faults.add(Fault { start: 1, end: 3, seed: 1, kind }));
+        core::array::from_fn(|period| {
+            let seen = faults.apply_to_samples(samples(7, 100 + 10 * period as u32), &table());
+            faults.apply_to_torque(0.0);
+            assert_eq!(seen.motor.counts, 7, "the other encoder");
+            seen.output.map(|reading| reading.counts)
+        })
+    }
+
+    #[test]
+    fn frozen_encoder_repeats_the_counts_of_its_start() {
+        let counts = link_counts(FaultKind::Frozen(EncoderShaft::Link));
+        assert_eq!(counts, [100, 110, 110, 130, 140].map(Some));
+    }
+
+    #[test]
+    fn offset_adds_to_the_counts_while_it_lasts() {
+        let count = i32::try_from((1_u64 << 32) / u64::from(TURN)).expect("a count");
+        let counts = link_counts(FaultKind::Offset(EncoderShaft::Link, -5 * count));
+        assert_eq!(counts, [100, 105, 115, 130, 140].map(Some));
+    }
+
+    #[test]
+    fn missing_counts_stay_missing() {
+        let counts = link_counts(FaultKind::MissingCounts(EncoderShaft::Link, 1 << 31));
+        assert_eq!(counts, [100, 105, 110, 120, 130].map(Some));
+    }
+
+    #[test]
+    fn lost_readings_of_the_link_are_absent() {
+        let counts = link_counts(FaultKind::LostReadings(EncoderShaft::Link, u32::MAX));
+        assert_eq!(counts, [Some(100), None, None, Some(130), Some(140)]);
+    }
+
+    #[test]
+    fn lost_readings_of_the_motor_repeat_the_last() {
+        let mut faults = FaultInjector::default();
+        let kind = FaultKind::LostReadings(EncoderShaft::Motor, u32::MAX);
+        assert!(faults.add(Fault { start: 1, end: 2, seed: 1, kind }));
+        let counts = [7, 8, 9].map(|motor| {
+            let seen = faults.apply_to_samples(samples(motor, 0), &table());
+            faults.apply_to_torque(0.0);
+            seen.motor.counts
+        });
+        assert_eq!(counts, [7, 7, 9]);
+    }
+
+    #[test]
+    fn torque_faults_act_on_the_torque_but_not_on_its_report() {
+        let mut faults = FaultInjector::default();
+        let fault = |kind| Fault { start: 0, end: 2, seed: 1, kind };
+        assert!(faults.add(fault(FaultKind::TorqueBias(0.5, 0.25))) && faults.add(fault(FaultKind::Saturation(1.0))));
+        assert_eq!([0.25, 4.0, 4.0].map(|command| faults.apply_to_torque(command)), [0.625, 1.0, 4.0]);
+        assert_eq!(faults.apply_to_samples(samples(0, 0), &table()).torque, 2.0, "the command within the limit");
+    }
+
+    #[test]
+    fn command_that_is_no_number_is_reported_as_zero() {
+        let mut faults = FaultInjector::default();
+        assert!(faults.add(Fault { start: 0, end: 9, seed: 1, kind: FaultKind::Saturation(1.0) }));
+        faults.apply_to_torque(f32::NAN);
+        assert_eq!(faults.apply_to_samples(samples(0, 0), &table()).torque, 0.0);
+    }
+
+    #[test]
+    fn fault_beyond_the_last_place_is_refused() {
+        let mut faults = FaultInjector::<f32>::default();
+        let fault = Fault { start: 0, end: 1, seed: 1, kind: FaultKind::Saturation(1.0) };
+        assert!((0..MAX_FAULTS).all(|_| faults.add(fault)) && !faults.add(fault));
+    }
+}

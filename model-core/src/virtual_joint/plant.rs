@@ -238,3 +238,37 @@ fn friction<T: Real>(table: &FrictionTable<T>, speed: T, driving: T, extra: T) -
     let viscous = table.viscous * speed;
     viscous + clamp(table.stop * speed + driving - viscous, -dry, dry)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: FrictionTable<f64> =
+        FrictionTable { coulomb: 2.0, viscous: 0.5, rise: 1.0, per_speed: 10.0, stop: 1000.0 };
+
+    #[test]
+    fn shaft_at_rest_sticks_up_to_its_friction_at_rest() {
+        assert_eq!([2.9, -2.9, 3.1].map(|driving| friction(&TABLE, 0.0, driving, 0.0)), [2.9, -2.9, 3.0]);
+    }
+
+    #[test]
+    fn sliding_shaft_is_braked_against_its_motion() {
+        let [forward, back] = [1.0, -1.0].map(|speed| friction(&TABLE, speed, 0.0, 0.0));
+        assert!(forward == -back && (forward - (0.5 + 2.0 + 1.0 / 101.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn half_of_the_rise_is_left_at_its_speed() {
+        assert!((friction(&TABLE, 0.1, 0.0, 0.0) - (0.05 + 2.0 + 0.5)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn losses_of_the_gears_add_to_the_dry_friction() {
+        assert_eq!(friction(&TABLE, 0.0, 9.0, 4.0), 7.0);
+    }
+
+    #[test]
+    fn slow_shaft_is_stopped_within_the_period() {
+        assert_eq!(friction(&FrictionTable { viscous: 0.0, ..TABLE }, 1e-3, 0.0, 0.0), 1.0);
+    }
+}

@@ -1,8 +1,8 @@
 //! Closing speed at which the motor can still brake the link.
 //!
 //! The linear law closes an error e at the speed w e, which takes a deceleration of w^2 e. Beyond some milliradians the
-//! motor cannot brake that hard. With the deceleration A that torque, load and inertia allow, the link approaches a place
-//! no faster than v(A, e):
+//! motor cannot brake that hard. With the deceleration A that torque, load and inertia allow, the link approaches a
+//! place no faster than v(A, e):
 //!
 //! ```text
 //! (K12)  A = 0.9 (M_max + all dry friction +- (L + bias))/J,   e_0 = A/w^2
@@ -12,8 +12,8 @@
 //! Value and slope of both parts agree at e_0. A set-point that moves at the speed u and brakes at b is approached
 //!
 //! - with v(A - b, e), if the link can brake beside the set-point;
-//! - with v(A, e + u^2/(2 b)) - u towards the place where the set-point will stop, if the set-point stops before the link
-//!   reaches it, e > (A - b) (u/b)^2/2, or if it brakes harder than the link can, b >= A, unless w e is slower.
+//! - with v(A, e + u^2/(2 b)) - u towards the place where the set-point will stop, if the set-point stops before the
+//!   link reaches it, e > (A - b) (u/b)^2/2, or if it brakes harder than the link can, b >= A, unless w e is slower.
 //!
 //! Up to e_0/4 the linear law applies for every set-point. Otherwise a set-point that brakes about as hard as the link
 //! can would permit no error: with an inertia known to 30 %, the link would be braked too early at every reversal of a
@@ -134,8 +134,8 @@ impl<T: Real> BrakingLimit<T> {
         Some(Approach { closing: side * approach.closing, acceleration: side * approach.acceleration })
     }
 
-    /// True if the linear law needs no more torque than braking leaves, or the error is below e_0/4. `against` brakes the
-    /// link in the direction of the set-point's motion, `back` on its way back [N m].
+    /// True if the linear law needs no more torque than braking leaves, or the error is below e_0/4. `against` brakes
+    /// the link in the direction of the set-point's motion, `back` on its way back [N m].
     fn linear_law_applies(&self, error: T, against: T, back: T, set_point_brakes: T) -> bool {
         let unmatched = self.inertia * set_point_brakes >= against;
         let needed = self.inertia * self.rate * self.rate * error;

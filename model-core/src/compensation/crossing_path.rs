@@ -1,6 +1,13 @@
-//! Path of a crossing (K8): a ramp to a steady speed, steady speed, a ramp to the landing speed. Loose planets are
-//! struck anywhere on the way, so that the highest speed determines the force: a path with a higher peak speed would
-//! strike harder without being faster.
+//! Path of a crossing: a ramp to a steady speed, steady speed, a ramp to the landing speed. Loose planets are struck
+//! anywhere on the way, so that the highest speed determines the force: a path with a higher peak speed would strike
+//! harder without being faster.
+//!
+//! ```text
+//! (K8)  v_x = (end - start - ramp/2 (start speed + end speed))/(T_c - ramp)
+//!       on a ramp, with s = time/ramp:   speed = start speed + (v_x - start speed) (3 s^2 - 2 s^3)
+//! ```
+//!
+//! Symbols: v_x = `steady`, T_c = `crossing.duration`, ramp = `crossing.ramp`.
 
 use super::crossing_timing::CrossingTiming;
 use crate::numbers::Real;
@@ -79,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_leads_from_one_end_to_the_other() {
+    fn path_leads_from_end_to_end() {
         for (time, place, rate) in [(0.0, 0.1, 0.3), (6e-3, 0.104, 0.2)] {
             for beside in [-1e-9, 1e-9] {
                 let [at, speed, acceleration] = path().at(time + beside);
@@ -101,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn no_speed_on_the_way_is_higher_than_the_steady_one() {
+    fn path_never_exceeds_the_steady_speed() {
         let rest = CrossingPath::new([0.0, 0.0], [3.78e-3, 0.0], CROSSING);
         let highest = (0..600).map(|part| rest.at(f64::from(part) * 1e-5)[1]).fold(0.0, f64::max);
         assert!((highest - 3.78e-3 / (CROSSING.duration - CROSSING.ramp)).abs() < 1e-12);

@@ -5,7 +5,8 @@
 //!       ramp = max(q v_x, 4 T_r), or max(sqrt(2 h q), 4 T_r) if v_x is not reached
 //! ```
 //!
-//! Symbols: T_c = `duration`, M_x = `force`, 1/Z = `strike_speed_per_torque`, q = `ramp_per_speed`, 4 T_r = `shortest_ramp`.
+//! Symbols: T_c = `duration`, M_x = `force`, 1/Z = `strike_speed_per_torque`, q = `ramp_per_speed`, 4 T_r =
+//! `shortest_ramp`.
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;

@@ -1,14 +1,19 @@
 //! Demand of a motion on the teeth, estimated from the motor's torque alone: free of payload modes and observer errors.
 //!
 //! ```text
-//! (K19)  y = u - k_J J a - f sign(v) - L_0;   k_J' = 4/s y J a/max (J a)^2;   f, L_0 by a Kalman filter (`load_friction`)
+//! (K19)  y = u - k_J J a - f sign(v) - L_0;   k_J' = 4/s y J a/max (J a)^2;   f, L_0 by a Kalman filter
 //! (K20)  d = (k_J J - J_m) a + (f - f_m) sign(v) + L_0
 //! ```
 //!
-//! Symbols, referred to the link: k_J = `inertia`, f, L_0 = `load`, J a, J_m a = `inertia_torques`, sign(v) = `direction`,
-//! max (J a)^2 = `peak_square`, f_m = `frictions[0]`, d = `torque`. (K19) is feedback-error learning (Kawato 1990); the filter begins with the
-//! friction of the joint file. d presses a flank beyond a threshold (K21): the friction that the motor may hold at rest, plus the standard
-//! deviation of the filter, plus the smallest demand of the monitor.
+//! | symbol, referred to the link | identifier |
+//! |---|---|
+//! | k_J; J a, J_m a | `inertia`; `inertia_torques` |
+//! | f, L_0; sign(v) | `load` (`load_friction`); `direction` |
+//! | max (J a)^2; f_m; d | `peak_square`; `frictions[0]`; `torque` |
+//!
+//! (K19) is feedback-error learning (Kawato 1990); the filter begins with the friction of the joint file. d presses a
+//! flank beyond a threshold (K21): the friction that the motor may hold at rest, plus the standard deviation of the
+//! filter, plus the smallest demand of the monitor.
 
 use super::load_friction::LoadFrictionFilter;
 use super::loop_state::friction_direction;

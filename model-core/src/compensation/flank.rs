@@ -1,6 +1,6 @@
-//! Selects the flank in use and the time of its change, and moves the motor through the gap. Assumption: without a flank
-//! the link moves freely. [`transitions`](super::transitions) maps the events of a period to an action; this file detects
-//! the events, executes the actions and computes the torque of each stage.
+//! Selects the flank in use and the time of its change, and moves the motor through the gap. Assumption: without a
+//! flank the link moves freely. [`transitions`](super::transitions) maps the events of a period to an action; this file
+//! detects the events, executes the actions and computes the torque of each stage.
 //!
 //! ```text
 //! (K5)   side (now + ahead) < 0,   side ahead < 0                        `demand_turned`

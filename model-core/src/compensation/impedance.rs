@@ -1,11 +1,13 @@
-//! Control law of impedance mode: commanded spring on the link, commanded damper on the motor, commanded torque. Without a preview the
-//! demand is extrapolated from its own course (K4).
+//! Control law of impedance mode: commanded spring on the link, commanded damper on the motor, commanded torque.
+//! Without a preview the demand is extrapolated from its own course.
 //!
 //! ```text
 //! (K3)  torque = t + k_p e + k_d (v - w_m) + 0.1 D_m (w_l + v_e - w_m) - cog(theta_m) + cog(theta_l)
+//! (K4)  demand(time) = L + f dir + J_l/J (t + k_p e + k_d (v - w_l) - L - f dir), extrapolated by time
 //! ```
 //!
-//! Symbols: t, k_p, k_d, v = `point`; cog(theta_m) - cog(theta_l) = `cogging_by_gap()`.
+//! Symbols: t, k_p, k_d, v = `point`; e = `state.error`; D_m term = `state.damping_torque()`;
+//! cog(theta_m) - cog(theta_l) = `state.cogging_difference()`.
 
 use super::control_demand::ControlDemand;
 use super::limit::mesh_torque;

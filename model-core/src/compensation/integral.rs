@@ -1,4 +1,10 @@
-//! Integral of a PID on the motor position, with back-calculation: u_i in (K18).
+//! Integral of a PID on the motor position, with back-calculation.
+//!
+//! ```text
+//! (K18)  u_i' = J w^3 (r + s - theta_m) + w (torque - torque before the limit),   |u_i| <= M_max
+//! ```
+//!
+//! Symbols: u_i = `torque`, theta_m - s - r = `position_error`, torque less torque before the limit = `cut`.
 
 use super::torque_swing::TorqueSwing;
 use crate::compensation::tables::CompensationTables;
@@ -41,10 +47,10 @@ impl<T: Real> Integral<T> {
         }
     }
 
-    /// Updates the integral by the motor's position error `position_error` [rad] and the torque `cut` that the limit cut off [N
-    /// m]. While the torque swings from side to side, a cut torque does not show that the integral is too large, so it
-    /// is held. Integrating further under the limit would make a loop with a heavier link than designed swing from
-    /// limit to limit without end.
+    /// Updates the integral by the motor's position error `position_error` [rad] and the torque `cut` that the limit
+    /// cut off [N m]. While the torque swings from side to side, a cut torque does not show that the integral is too
+    /// large, so it is held. Integrating further under the limit would make a loop with a heavier link than designed
+    /// swing from limit to limit without end.
     pub fn integrate(&mut self, tables: &CompensationTables<T>, position_error: T, cut: T) {
         if self.swings() && cut != T::ZERO {
             return;

@@ -1,21 +1,29 @@
-//! Control of the motor with an adaptive inverse of the backlash (Tao, Kokotovic 1996): while both shafts are seen but the gap is unknown,
-//! and after a loop has hunted. Of the link only a slow mean is used, so that no mode of a payload is fed back. The link is damped only if
-//! the motor swings against the delays of the loop. The observer's half-gap and offset replace an edge that the demand has not pressed yet;
-//! the observer's compliance gives the wind-up.
+//! Control of the motor with an adaptive inverse of the backlash (Tao, Kokotovic 1996): while both shafts are seen but
+//! the gap is unknown, and after a loop has hunted. Of the link only a slow mean is used, so that no mode of a payload
+//! is fed back. The link is damped only if the motor swings against the delays of the loop. The observer's half-gap and
+//! offset replace an edge that the demand has not pressed yet; the observer's compliance gives the wind-up.
 //!
 //! ```text
-//! (K18)  u = k_J J a + J_m s'' + K (r + s - theta_m) + D (v + s' - w_m) + f sign(v) + u_i,   u_i' = J w^3 (r + s - theta_m)
+//! (K18)  u = k_J J a + J_m s'' + K (r + s - theta_m) + D (v + s' - w_m) + f sign(v) + u_i
+//!        u_i' = J w^3 (r + s - theta_m)
 //! (K21)  p follows d/(pressing demand) through a play of +-1, within [-1, 1]
 //!        s -> (drive + back)/2 + 0.75 p (drive - back)/2 + d/S,   double pole at 3 w
 //! ```
 //!
-//! Symbols, referred to the link: u = `torque`, s, s' = `shift`, its target = `target_shift`, p = `share` from -1 (back flank) to 1 (drive flank),
-//! drive, back = `edges`, u_i = `integral`; `demand` estimates k_J, f and d from the torque.
+//! | symbol, referred to the link | identifier |
+//! |---|---|
+//! | u, u_i | `torque()`, `integral` |
+//! | s, s'; its target | `shift`; `target_shift` |
+//! | p, from -1 (back flank) to 1 (drive flank) | `share` |
+//! | drive, back | `edges` |
+//! | k_J, f, d | `demand`, estimated from the torque |
+//! | S | `state.stiffness` |
 //!
 //! - The play keeps noise about zero demand from moving the motor. While only one edge is known, 1 replaces 0.75.
-//! - Each edge is the mean of motor less link, less wind-up, while the demand presses that flank and the torque reaches the teeth.
-//! - A link that leaves the pressed flank and lags on the other side moves to the other flank: p jumps there, and the load is estimated
-//!   anew.
+//! - Each edge is the mean of motor less link, less wind-up, while the demand presses that flank and the torque reaches
+//!   the teeth.
+//! - A link that leaves the pressed flank and lags on the other side moves to the other flank: p jumps there, and the
+//!   load is estimated anew.
 
 use super::demand_estimator::DemandEstimator;
 use super::integral::Integral;
@@ -84,8 +92,8 @@ impl<T: Real> BacklashInverse<T> {
         state.motor_lead - state.error - self.shift[0]
     }
 
-    /// Updates share, edges and target in one of [`SlowTask::periods`] periods in which both shafts are seen, whichever law
-    /// controls.
+    /// Updates share, edges and target in one of [`SlowTask::periods`] periods in which both shafts are seen, whichever
+    /// law controls.
     // Not inlined: fewer instructions per tick on a Cortex-M4F, because the controlling law keeps its registers.
     #[inline(never)]
     pub fn update_edges(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>, now: &Motion<T>) {

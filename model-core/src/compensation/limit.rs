@@ -4,9 +4,10 @@
 //! (K11)  T_s + sqrt((T_s - F)^2 + S I v_c^2) <= P,   hence  T_s <= (P + F)/2 - S I v_c^2/(2 (P - F)),   T_s >= P/2
 //! ```
 //!
-//! Under constant torque the torque through the teeth swings about its static value T_s = `mesh_torque()`, while motor and link close at
-//! v_c = `closing`. S = `stiffness`, I = `reduced_inertia`, F = `force` at present, P = `limit`. Teeth that have just met get half of P at
-//! once, and all of P a quarter of a swing later, without overshoot.
+//! Under constant torque the torque through the teeth swings about its static value T_s, while motor and link close at
+//! v_c. Teeth that have just met get half of P at once, and all of P a quarter of a swing later, without overshoot.
+//!
+//! Symbols: T_s = `mesh_torque()`, v_c = `closing`, S = `stiffness`, I = `reduced_inertia`, F = `force`, P = `limit`.
 
 use super::load::LoadModel;
 use super::loop_state::LoopState;

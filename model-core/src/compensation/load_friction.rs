@@ -1,12 +1,13 @@
-//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into a gravity torque (weight, a steady push), which does not
-//! depend on the direction of motion, and dry friction, which does. Only motion in both directions separates the two.
+//! Kalman filter with two states: splits the torque that brakes a link into a gravity torque (weight, a steady push),
+//! which does not depend on the direction of motion, and dry friction, which does. Only motion in both directions
+//! separates them.
 //!
 //! ```text
-//! K = P h / (h P h + r),   (L, f) += K (z - L - f dir),   P -= K h P,   h = (1, dir)
+//! (K6), (K19)  K = P h/(h P h + r),   (L, f) += K (z - L - f dir),   P -= K h P,   h = (1, dir)
 //! ```
 //!
-//! Symbols: L = `gravity_torque` and f = `friction` [N m], dir = `direction` from -1 to 1, P = `variance` of (L, f), z = measured `torque`,
-//! r = `noise`, the variance of z.
+//! Symbols: L, f = `gravity_torque`, `friction`; dir = `direction`, -1 to 1; P = `variance` of (L, f); z = `torque`, r
+//! = its variance `noise`.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;

@@ -54,7 +54,8 @@ pub(super) struct LoopState<T: Real> {
     pub flank_shift: T,
     /// Growth of `flank_shift` per radian of the link [-].
     pub flank_shift_slope: T,
-    /// Gap coordinate, referred to the link: -`half_gap` to `half_gap` about `flank_shift` while every mesh is free [rad].
+    /// Gap coordinate, referred to the link: -`half_gap` to `half_gap` about `flank_shift` while every mesh is free
+    /// [rad].
     pub gap: T,
     /// Flank in contact.
     pub contact: Option<Flank>,

@@ -17,8 +17,8 @@
 //! | e_max: largest recent error of plain control, decays in 2 s | `worst_error` |
 //!
 //! Impedance mode has no position error: only n decides, with the fast decay. A hunting loop is left to plain control
-//! (`inverse`; in impedance mode `plain`) for a time that grows by the factor `longer` with each trip. The time returns to
-//! its first value once the compensation has acted for as long.
+//! (`inverse`; in impedance mode `plain`) for a time that grows by the factor `longer` with each trip. The time returns
+//! to its first value once the compensation has acted for as long.
 
 use super::loop_state::LoopState;
 use super::slow_task::SlowTask;
@@ -158,8 +158,8 @@ impl<T: Real> LoopMonitor<T> {
         tables.watch.calm_per_half * state.half_gap
     }
 
-    /// Lets the count of unexplained flank changes decay (K22), fast while the error is small. A hunting loop also pushes
-    /// the link hard, so a pushed link is never calm.
+    /// Lets the count of unexplained flank changes decay (K22), fast while the error is small. A hunting loop also
+    /// pushes the link hard, so a pushed link is never calm.
     fn decay_count(
         &mut self,
         tables: &CompensationTables<T>,
@@ -173,8 +173,8 @@ impl<T: Real> LoopMonitor<T> {
         self.unexplained = decrease(self.unexplained, period * if is_calm { calm_leak } else { leak });
     }
 
-    /// Counts a change of the flank (K22), and notes what explains the flank in use. Catching a link that was moved from
-    /// outside changes flanks rightly, and so does a load. But hunting also looks like a load.
+    /// Counts a change of the flank (K22), and notes what explains the flank in use. Catching a link that was moved
+    /// from outside changes flanks rightly, and so does a load. But hunting also looks like a load.
     fn count_change(
         &mut self,
         tables: &CompensationTables<T>,

@@ -1,13 +1,12 @@
-//! Detector of a load that swings faster than loads by people, weights and motions: a payload on a flexible arm. The reaction of such
-//! a payload must not be fed forward as measured, because a delayed feed-forward drives the swing.
+//! Detector of a load that swings faster than loads by people, weights and motions: a payload on a flexible arm. The
+//! reaction of such a payload must not be fed forward as measured, because a delayed feed-forward drives the swing.
 //!
 //! ```text
-//! (K7)  c' = (z - c)/(15 T_r),   m' = 25/s (c - m)
+//! (K7)  c' = (z - c)/(15 T_r),   m' = 25/s (c - m);   swing: c - m passes +-M three times, each within 1/8 s
 //! ```
 //!
-//! Symbols: z = `reading`, the load without friction; c, m = `means`, its fast and slow mean; M = `switching.measured`, the uncertainty of
-//! measured torques. The load changes sides when c - m < -M after c - m > M, or the reverse. Three changes, each within an eighth of a
-//! second of the last, are a swing.
+//! Symbols: z = `reading`, the load without friction; c, m = `means`, its fast and slow mean; M = `switching.measured`,
+//! the uncertainty of measured torques.
 
 use super::thresholds::PayloadSwingThresholds;
 use crate::compensation::tables::CompensationTables;

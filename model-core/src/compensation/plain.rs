@@ -1,9 +1,13 @@
-//! Plain control: a PID on the motor position with all poles at the bandwidth and known load fed forward, while the link is not seen; in
-//! impedance mode the commanded law, while the compensation does not act.
+//! Plain control: a PID on the motor position with all poles at the bandwidth and known load fed forward, while the
+//! link is not seen; in impedance mode the commanded law, while the compensation does not act.
 //!
 //! ```text
+//!        torque = J a - K (theta_m - lead) + D (v - w_m) + L + f dir + u_i,   u_i' = -J w^3 (theta_m - lead)
 //! (K17)  torque = t + k_p (r - theta_l) + k_d (v - w_m);   theta_m replaces theta_l if the link is not seen
 //! ```
+//!
+//! Symbols: theta_m - lead = `position_error()`, with lead = `motor_lead`, the expected distance of motor and link;
+//! u_i = `integral`.
 
 use super::integral::Integral;
 use super::load::LoadModel;

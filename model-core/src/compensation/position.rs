@@ -248,8 +248,8 @@ impl<T: Real> PositionLaw<T> {
     }
 
     /// Smooths the measured part of the demand. Changes that are large against the noise are followed faster. With a
-    /// preview the planned demand is known early, so the measured demand is smoothed longer: teeth that oscillate about a
-    /// small torque at the mesh frequency must not make the motor leave at a peak and return at once.
+    /// preview the planned demand is known early, so the measured demand is smoothed longer: teeth that oscillate about
+    /// a small torque at the mesh frequency must not make the motor leave at a peak and return at once.
     fn follow_measured_demand(
         &mut self,
         tables: &CompensationTables<T>,

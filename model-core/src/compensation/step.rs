@@ -1,4 +1,5 @@
-//! One control period of the compensation: selects the control law, blends compensation with plain control, limits the torque.
+//! One control period of the compensation: selects the control law, blends compensation with plain control, limits the
+//! torque.
 
 use super::control_demand::ControlDemand;
 use super::flank::FlankControl;

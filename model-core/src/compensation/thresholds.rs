@@ -4,9 +4,10 @@
 //! no conversion runs in the tick. Constants of the design follow: `design` turns them into the tables. Constants that
 //! follow from an equation (K) or count elements of an array stand where they are used.
 //!
-//! Origin: *derived* (formula), *data sheet*, *measured* (test), *chosen* (reason), *tuned* (test; RMS errors and peaks are over those of
-//! the motor PID). Where no test is named, no sensitivity is recorded. `docs/decisions/compensation-modelled-joints.md`
-//! and `compensation-real-joints.md` have the figures of the rejected values.
+//! Origin: *derived* (formula), *data sheet*, *measured* (test), *chosen* (reason), *tuned* (test; RMS errors and peaks
+//! are over those of the motor PID). Where no test is named, no sensitivity is recorded.
+//! `docs/decisions/compensation-modelled-joints.md` and `compensation-real-joints.md` have the figures of the rejected
+//! values.
 
 use crate::numbers::Real;
 
@@ -33,8 +34,8 @@ pub(super) struct PositionThresholds<T> {
     /// excess outweighs part of the damper between motor and link, so that the link is pushed back sooner. Tuned on
     /// `hil/impact.toml`: with all torque, force 2.9 instead of 2.0 times the rated.
     pub impact_excess_torque: T,
-    /// Smoothing rate of the set-point's jerk over the smoothing rate of measured torque [-]: planners send coarse steps,
-    /// but no noise. Tuned.
+    /// Smoothing rate of the set-point's jerk over the smoothing rate of measured torque [-]: planners send coarse
+    /// steps, but no noise. Tuned.
     pub jerk_smoothing_ratio: i32,
     /// Reduction of the smoothing rate of the measured demand with a preview [-]: 22.5 instead of 15 T_r. Tuned on
     /// `hil/t2b-slow.toml`: one instead of 9 of 150 runs spend more than 10 ms in the gap.
@@ -71,8 +72,8 @@ impl<T: Real> BrakingThresholds<T> {
 
 /// Flank control (K5), (K13).
 pub(super) struct FlankThresholds<T> {
-    /// Time without need of a flank after which the motor moves to the middle of the gap, over `rest.hunting` [-]: a load
-    /// that passes through zero is absent for a shorter time. Tuned on `hil/disturbed-hold.toml`.
+    /// Time without need of a flank after which the motor moves to the middle of the gap, over `rest.hunting` [-]: a
+    /// load that passes through zero is absent for a shorter time. Tuned on `hil/disturbed-hold.toml`.
     pub unneeded_time: T,
     /// Closing speed below which a motor on a path counts as braked [landing speeds]. Derived: the force of a blow is
     /// proportional to the speed, and planets struck on the way cause four times the force of a landing.
@@ -92,8 +93,8 @@ impl<T: Real> FlankThresholds<T> {
 pub(super) struct StartThresholds<T> {
     /// Time of standing still after which friction holds the link, over `rest.hunting` [-]. Tuned.
     pub standstill_time: T,
-    /// Travel below which the link stands still, over the half-gap [-]. Derived: an encoder's last count flickers within
-    /// it; the speed is too coarse.
+    /// Travel below which the link stands still, over the half-gap [-]. Derived: an encoder's last count flickers
+    /// within it; the speed is too coarse.
     pub standstill_travel: T,
 }
 
@@ -103,8 +104,8 @@ impl<T: Real> StartThresholds<T> {
 
 /// Easing of a load at rest.
 pub(super) struct EasingThresholds<T> {
-    /// Largest error of a steady load, and travel by which the link gives way, over the first dead band [-]. Derived: two
-    /// counts of a good encoder.
+    /// Largest error of a steady load, and travel by which the link gives way, over the first dead band [-]. Derived:
+    /// two counts of a good encoder.
     pub max_travel: T,
     /// Share of the load that is held while the load is eased [-]. Derived: the load fades as fast as it is followed.
     pub held_share: T,
@@ -138,8 +139,8 @@ pub(super) struct PayloadSwingThresholds<T> {
     /// Half the period of the slowest swing [s]. Chosen: modes of payloads are above 8 Hz, motions and loads by people
     /// below 4 Hz.
     pub longest_half_period: T,
-    /// Time without a swing after which the load no longer counts as swinging; also the time at the start during which it
-    /// may swing [s]. Tuned.
+    /// Time without a swing after which the load no longer counts as swinging; also the time at the start during which
+    /// it may swing [s]. Tuned.
     pub memory: T,
 }
 
@@ -151,8 +152,8 @@ impl<T: Real> PayloadSwingThresholds<T> {
 pub(super) struct TorqueSwingThresholds<T> {
     /// Torque beyond which it counts as large, over the motor's limit [-]. Tuned on `hil/never-worse.toml`.
     pub large_torque: T,
-    /// Time constant of the loop over the time within which a swinging torque changes from side to side [-]: faster than
-    /// any motion that the loop can follow. Tuned on `hil/never-worse.toml`.
+    /// Time constant of the loop over the time within which a swinging torque changes from side to side [-]: faster
+    /// than any motion that the loop can follow. Tuned on `hil/never-worse.toml`.
     pub side_change_rate: T,
 }
 
@@ -170,8 +171,8 @@ pub(super) struct PlainThresholds<T> {
     /// Growth of the damper of a motor that swings or whose link is pushed, over D_m [-]: the damper then acts on the
     /// motor, not between motor and link. Tuned on `hil/never-worse.toml` and `hil/impact.toml`.
     pub damping_growth: T,
-    /// Part of the remaining damper that acts on a link that is pushed hard [-]. Tuned on `hil/impact.toml`: 0 gives force
-    /// 1.139, 2/3 gives 1.352 of PID's, 1/2 gives 1.078.
+    /// Part of the remaining damper that acts on a link that is pushed hard [-]. Tuned on `hil/impact.toml`: 0 gives
+    /// force 1.139, 2/3 gives 1.352 of PID's, 1/2 gives 1.078.
     pub pushed_link_damping: T,
 }
 
@@ -189,13 +190,13 @@ pub(super) struct InverseThresholds<T> {
     /// Part of the lost motion that is not inverted [-]. An unforeseen change of the flank causes an error of half the
     /// lost motion without an inverse, of all of it with a full inverse. Tuned.
     pub uninverted_share: T,
-    /// Double pole of the path of the shift, over the bandwidth [-]: a crossing takes little more than a time constant of
-    /// the loop, and less torque than the limit of the bandwidth leaves. Tuned.
+    /// Double pole of the path of the shift, over the bandwidth [-]: a crossing takes little more than a time constant
+    /// of the loop, and less torque than the limit of the bandwidth leaves. Tuned.
     pub shift_pole_ratio: T,
     /// Rate at which an edge is followed, over the bandwidth [-]: slower than any payload swings. Tuned.
     pub edge_rate_ratio: T,
-    /// Time for which a flank is pressed before its edge is measured [time constants of the loop]. Derived: a crossing and
-    /// its transient.
+    /// Time for which a flank is pressed before its edge is measured [time constants of the loop]. Derived: a crossing
+    /// and its transient.
     pub settling_time: T,
     /// Saturation of the time for which a flank is pressed [time constants of the loop]. Chosen.
     pub longest_pressed_time: T,
@@ -219,8 +220,9 @@ impl<T: Real> InverseThresholds<T> {
 pub(super) struct DemandThresholds<T> {
     /// Rate at which the inertia estimate follows [1/s]: a few swings of a motion. Tuned.
     pub inertia_rate: T,
-    /// Rates at which gravity torque and friction follow once they are known [1/s]. Tuned on `hil/real-any.toml`: at 8 the
-    /// gravity torque follows a loop that swings at 5 Hz, and its sign sustains the swing (RMS 3.1 instead of 0.56).
+    /// Rates at which gravity torque and friction follow once they are known [1/s]. Tuned on `hil/real-any.toml`: at 8
+    /// the gravity torque follows a loop that swings at 5 Hz, and its sign sustains the swing (RMS 3.1 instead of
+    /// 0.56).
     pub load_rates: [T; 2],
     /// Smallest accelerating torque for estimating the inertia, over the motor's limit [-]: friction hides smaller
     /// torques. Tuned.
@@ -259,11 +261,11 @@ pub(super) struct MonitorThresholds<T> {
     /// Change of the error between two judgements beyond the change by its rate that counts as a jump of the set-point,
     /// over half the lost motion [-]. Tuned.
     pub set_point_jump: T,
-    /// Time after takeover in which the error is granted [time constants of the loop]. Derived: the observer first has to
-    /// estimate the link's speed.
+    /// Time after takeover in which the error is granted [time constants of the loop]. Derived: the observer first has
+    /// to estimate the link's speed.
     pub takeover_time: T,
-    /// Amount that a flank change explained by the load adds to the count [-]. Derived: with the decay of 1/s a load may
-    /// change flanks eight times per second.
+    /// Amount that a flank change explained by the load adds to the count [-]. Derived: with the decay of 1/s a load
+    /// may change flanks eight times per second.
     pub load_change_weight: T,
     /// Decay rate of the largest error [1/s]. Tuned.
     pub worst_error_decay: T,
@@ -281,13 +283,13 @@ impl<T: Real> MonitorThresholds<T> {
 /// Limits of motor and teeth (K11), (K12), at design.
 #[cfg(feature = "design")]
 pub(super) struct LimitDesign {
-    /// Torque through the teeth that the law may ask for, over the peak torque [-]. Derived: torque constant, efficiency
-    /// and the swing within the loop's delays each take a few hundredths.
+    /// Torque through the teeth that the law may ask for, over the peak torque [-]. Derived: torque constant,
+    /// efficiency and the swing within the loop's delays each take a few hundredths.
     pub teeth_per_peak: f64,
     /// Lower bound of the room P - F over P in (K11) [-]. Derived: smaller than the uncertainty of the torques.
     pub least_room: f64,
-    /// Share of the available torque that braking is planned with (K12) [-]. Tuned on moves, sines and random motions near
-    /// the torque limit: 0.85 or 0.95 give a peak of 1.29.
+    /// Share of the available torque that braking is planned with (K12) [-]. Tuned on moves, sines and random motions
+    /// near the torque limit: 0.85 or 0.95 give a peak of 1.29.
     pub braking: f64,
     /// Peak torque over rated torque if neither settings nor motor give less [-]. Data sheet: the least that gear
     /// catalogues allow.
@@ -314,10 +316,11 @@ pub(super) struct LawDesign {
     /// Share of D_m in impedance mode (K3) [-]: the part of a commanded damper that the loop's delays take. Tuned on
     /// `hil/impedance-soft.toml`: 0, 0.3, 0.6 give torque errors of 1.06, 1.07, 1.14 instead of 1.04.
     pub impedance_damping: f64,
-    /// Time in which the damper on the motor slows the motor by 1/e [reaction times] (K2). Derived: with fewer the motor
-    /// swings against the delays of the loop.
+    /// Time in which the damper on the motor slows the motor by 1/e [reaction times] (K2). Derived: with fewer the
+    /// motor swings against the delays of the loop.
     pub motor_damping_time: f64,
-    /// Longest time between impedance set-points of a moving stream [s]. Data sheet: streams send at least 200 per second.
+    /// Longest time between impedance set-points of a moving stream [s]. Data sheet: streams send at least 200 per
+    /// second.
     pub longest_hold: f64,
     /// Time of blending from plain to compensated control [1/w]; the other way takes one period. Tuned.
     pub trust_time: f64,
@@ -330,8 +333,8 @@ pub(super) const LAW: LawDesign =
 /// Path through the gap (K8), at design.
 #[cfg(feature = "design")]
 pub(super) struct CrossingDesign {
-    /// Force on planets struck in the gap, over the rated force [-]. Derived: planets struck repeatedly take up to one and
-    /// a half times the estimated first blow, which leaves three fifths.
+    /// Force on planets struck in the gap, over the rated force [-]. Derived: planets struck repeatedly take up to one
+    /// and a half times the estimated first blow, which leaves three fifths.
     pub strike_per_rated: f64,
     /// Largest force on planets struck in the gap, over the peak torque, at any demand [-]: a planet caught between sun
     /// and flank is struck harder each time. Tuned: 0.68 makes forces and median RMS gain 10 % larger.
@@ -364,7 +367,8 @@ pub(super) struct LandingDesign {
     pub force_per_rated: f64,
     /// Force of a landing over the torque that the flank will carry, where that is more [-]. Tuned.
     pub force_per_demand: f64,
-    /// Rise time of the law's torque after a landing [reaction times]; the limit (K11) bounds the torque reached. Chosen.
+    /// Rise time of the law's torque after a landing [reaction times]; the limit (K11) bounds the torque reached.
+    /// Chosen.
     pub rise_time: f64,
     /// Time in which a missed impulse is returned, over the time of a crossing (K16) [-]. Tuned.
     pub recovery_time: f64,
@@ -399,11 +403,11 @@ pub(super) struct SwitchingDesign {
     /// Largest growth of the hysteresis, over the torque that an error of half the lost motion asks for [-]: waiting
     /// longer for a flank costs more than a change in vain. Tuned.
     pub most_growth: f64,
-    /// Time constant of a transient of the loop [1/w]. Derived: by then the new flank has corrected the error of an early
-    /// crossing. Grown hysteresis, memory of a push and of cut torque decay over it.
+    /// Time constant of a transient of the loop [1/w]. Derived: by then the new flank has corrected the error of an
+    /// early crossing. Grown hysteresis, memory of a push and of cut torque decay over it.
     pub transient: f64,
-    /// Smoothing time of measured torque before decisions [reaction times]. Tuned on `hil/t2b-slow.toml` (15 or 23): the
-    /// observer's torques are wrong for a few milliseconds after every impact.
+    /// Smoothing time of measured torque before decisions [reaction times]. Tuned on `hil/t2b-slow.toml` (15 or 23):
+    /// the observer's torques are wrong for a few milliseconds after every impact.
     pub smoothing_time: f64,
     /// Change of a torque beyond which its smoothing is faster, over the largest torque [-]. Tuned.
     pub large_step: f64,
@@ -441,11 +445,11 @@ pub(super) const REST: RestDesign =
 /// Load model (K6), at design.
 #[cfg(feature = "design")]
 pub(super) struct LoadDesign {
-    /// Square of the time constant of the gravity torque [s^2]: 3 ms. Tuned: always in 32 ms, median error a third larger
-    /// without a payload.
+    /// Square of the time constant of the gravity torque [s^2]: 3 ms. Tuned: always in 32 ms, median error a third
+    /// larger without a payload.
     pub gravity_time_squared: f64,
-    /// Square of the time constant of the friction estimate [s^2]: friction is found within a few reversals, then kept for
-    /// seconds. Tuned.
+    /// Square of the time constant of the friction estimate [s^2]: friction is found within a few reversals, then kept
+    /// for seconds. Tuned.
     pub friction_time_squared: f64,
     /// Time constant of the estimated rate of the load [s]: a weight swings in a second. Tuned.
     pub rate_time: f64,
@@ -454,7 +458,8 @@ pub(super) struct LoadDesign {
     /// Speed at which dry friction reaches its full size [rad/s]. Derived: the resolution of encoders, for want of a
     /// better number.
     pub friction_speed: f64,
-    /// Planned speed at which dry friction reaches its full size [rad/s]: a motion passes it in a few control periods. Chosen.
+    /// Planned speed at which dry friction reaches its full size [rad/s]: a motion passes it in a few control periods.
+    /// Chosen.
     pub planned_friction_speed: f64,
 }
 
@@ -471,26 +476,26 @@ pub(super) const LOAD: LoadDesign = LoadDesign {
 /// Monitor of the loop (K22) to (K24), at design.
 #[cfg(feature = "design")]
 pub(super) struct MonitorDesign {
-    /// Corner of the slow load that explains a flank [rad/s]: below the modes of flexible payloads (8 Hz and more), above
-    /// loads by people and steps. Chosen.
+    /// Corner of the slow load that explains a flank [rad/s]: below the modes of flexible payloads (8 Hz and more),
+    /// above loads by people and steps. Chosen.
     pub slow_load_corner: f64,
     /// Decay of the count of unexplained flank changes in general [1/s]. Tuned.
     pub leak: f64,
     /// Decay of the count while the error is small [1/s]. Measured: a link without friction drifts from flank to flank
     /// fifteen times per second, at a tenth of the error of plain control.
     pub calm_leak: f64,
-    /// Unexplained flank changes beyond which the loop hunts [-]. Tuned on `hil/never-worse.toml`: a joint that follows an
-    /// alternating load leaves a flank as often as some joints that hunt.
+    /// Unexplained flank changes beyond which the loop hunts [-]. Tuned on `hil/never-worse.toml`: a joint that follows
+    /// an alternating load leaves a flank as often as some joints that hunt.
     pub changes: f64,
     /// RMS error that is small, over half the lost motion [-]. Derived: a third of the error without compensation.
     pub calm_error: f64,
     /// Averaging time of the squared error [s]. Tuned.
     pub averaging_time: f64,
-    /// RMS error beyond which the loop hunts, over half the lost motion [-]. Derived: control that ignores the gap leaves
-    /// the link on either flank, at half the lost motion.
+    /// RMS error beyond which the loop hunts, over half the lost motion [-]. Derived: control that ignores the gap
+    /// leaves the link on either flank, at half the lost motion.
     pub hunting_error: f64,
-    /// Additional permitted error, over the deflection of the loop's spring by the demand [-]. Derived: inertia and load
-    /// that are 30 % wrong.
+    /// Additional permitted error, over the deflection of the loop's spring by the demand [-]. Derived: inertia and
+    /// load that are 30 % wrong.
     pub error_per_deflection: f64,
     /// Time of plain control after the first trip [s]. Tuned.
     pub first_retry: f64,
@@ -520,19 +525,19 @@ pub(super) const MONITOR: MonitorDesign = MonitorDesign {
 pub(super) struct BandwidthDesign {
     /// Default bandwidth, where the joint permits it [rad/s]. Chosen.
     pub default: f64,
-    /// Smallest phase margin of the motor alone in the open gap [degrees]. Measured on joints with up to a fifth more lag
-    /// than on the data sheet: down to 4.7 degrees the gap was estimated on as many joints as at any rate; below zero it
-    /// was not estimated on a third to nearly all of them.
+    /// Smallest phase margin of the motor alone in the open gap [degrees]. Measured on joints with up to a fifth more
+    /// lag than on the data sheet: down to 4.7 degrees the gap was estimated on as many joints as at any rate; below
+    /// zero it was not estimated on a third to nearly all of them.
     pub phase_margin: f64,
-    /// Smallest number of control periods per time constant 1/w [-]. Measured: from 33 on the gap was estimated on as many
-    /// joints as at any rate; at 28 and below, not on all of them.
+    /// Smallest number of control periods per time constant 1/w [-]. Measured: from 33 on the gap was estimated on as
+    /// many joints as at any rate; at 28 and below, not on all of them.
     pub periods: f64,
-    /// Smallest frequency of the first swing of motor against link, over the bandwidth [-]. Tuned on one strain wave gear
-    /// in motion T2: hunting at 3.9, none at 5; inertias 30 % off move the swing by 15 %. No test holds it yet.
+    /// Smallest frequency of the first swing of motor against link, over the bandwidth [-]. Tuned on one strain wave
+    /// gear in motion T2: hunting at 3.9, none at 5; inertias 30 % off move the swing by 15 %. No test holds it yet.
     pub swing_ratio: f64,
-    /// Largest crossing time from rest to rest at the largest torque, over the time constant of the loop [-]. Tuned on one
-    /// joint with 80 mrad of play in a sine of 1 Hz: the link is thrown from flank to flank at 0.56, not at 0.42; the
-    /// guess of the gap may be half of the gap. No test holds it yet.
+    /// Largest crossing time from rest to rest at the largest torque, over the time constant of the loop [-]. Tuned on
+    /// one joint with 80 mrad of play in a sine of 1 Hz: the link is thrown from flank to flank at 0.56, not at 0.42;
+    /// the guess of the gap may be half of the gap. No test holds it yet.
     pub crossing_ratio: f64,
     /// Highest control rate considered [Hz]. Chosen.
     pub fastest_rate: f64,

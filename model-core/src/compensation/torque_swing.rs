@@ -1,5 +1,7 @@
 //! Detector of a torque that swings from side to side: then the delays of the loop exceed the designed ones, and the
-//! motor bears less damping.
+//! motor bears less damping. A torque beyond half of the motor's limit on one side marks that side; the mark decays
+//! within a quarter of the loop's time constant. A torque beyond half of the limit on the other side before then is a
+//! swing.
 
 use super::thresholds::TorqueSwingThresholds;
 use crate::compensation::tables::CompensationTables;

@@ -140,7 +140,7 @@ mod tests {
     use crate::virtual_joint::VirtualJoint;
 
     #[test]
-    fn an_effect_that_a_virtual_joint_lacks_is_refused_by_its_key() {
+    fn unsupported_effect_is_refused_by_its_key() {
         let file = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
         let tables: Tables<f32, 3> = design(&file.parameters, 10_000).expect("tables");
         let mut around = file.surroundings;
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
+    fn self_locking_gear_holds_the_link() {
         // Gap of 3 arcmin, twice the wind-up of 20 N m at 20 N m/arcmin as the link swings into the teeth, and an
         // encoder error.
         let most = (3.0 + 2.0 + 1.0) / (360.0 * 60.0);

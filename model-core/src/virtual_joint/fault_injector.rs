@@ -17,7 +17,8 @@ pub const MAX_FAULTS: usize = 10;
 struct ActiveFault<T: Real> {
     fault: Fault<FixedPoint<T>>,
     random: u64,
-    /// `frozen_angle`: angle at which the encoder froze. `last_angle`: angle in the last period, for missing counts [2^-32 turns].
+    /// `frozen_angle`: angle at which the encoder froze. `last_angle`: angle in the last period, for missing counts
+    /// [2^-32 turns].
     frozen_angle: Option<u32>,
     last_angle: Option<u32>,
     /// Uncounted motion, in 2^-32 of 2^-32 turns.

@@ -1,6 +1,16 @@
 //! Real-time plant: the fixed step of the gears with motor, current loop, frictions, weight and encoders, one control
 //! period at a time. Torques are constant over a period; friction can stick. There is no noise, so that equal commands
 //! give equal bits everywhere.
+//!
+//! ```text
+//! air gap   i += (u - i) rise,   torque = (u - (u - i) lacking) gain,   u = command, delayed
+//! friction  viscous w + clamp(stop w + driving - viscous w, -dry, dry)
+//!           dry = coulomb + rise/(1 + (w/w_half)^2) + loss
+//! encoder   counts(angle - lag w + once sin(angle) + twice sin(2 angle))
+//! ```
+//!
+//! Symbols: the fields of [`SurroundingsTable`], [`CurrentLoopTable`](super::tables::CurrentLoopTable),
+//! [`FrictionTable`] and [`EncoderErrorTable`]; w = speed of the shaft, 1/w_half = `per_speed`, stop = inertia/period.
 
 use crate::gears::Tables;
 use crate::gears::{Model, Outputs, Torques};

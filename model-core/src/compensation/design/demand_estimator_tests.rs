@@ -26,27 +26,27 @@ fn pressing(tables: &CompensationTables<f32>, friction: f32, load: f32) -> [f32;
 }
 
 #[test]
-fn friction_turns_the_demand_round_with_the_motion_though_it_was_seen_one_way_only() {
+fn friction_seen_one_way_reverses_with_the_motion() {
     // The real friction is a third above the data sheet.
     let [on, back] = pressing(&with_friction(0.3, 1.0), 1.7, 0.2);
     assert!(on > 1.0 && back < 0.0, "{on} on the way, {back} after it");
 }
 
 #[test]
-fn a_weight_beyond_the_friction_keeps_its_flank() {
+fn weight_beyond_the_friction_keeps_its_flank() {
     let [on, back] = pressing(&with_friction(0.3, 1.0), 1.3, 4.0);
     assert!(on > 1.0 && back > 0.0, "{on} on the way, {back} after it");
 }
 
 #[test]
-fn a_load_that_may_be_friction_alone_presses_nothing_for_sure() {
+fn load_that_may_be_friction_presses_no_flank() {
     // The data sheet states no friction.
     let [on, back] = pressing(&with_friction(0.0, 0.0), 0.2, 0.2);
     assert!(on > 1.0 && back.abs() < 1.0, "{on} on the way, {back} after it");
 }
 
 #[test]
-fn torque_that_the_motor_alone_takes_passes_no_demand() {
+fn torque_of_the_motor_alone_is_not_transmitted() {
     let tables = with_friction(0.0, 0.0);
     let now = Motion { acceleration: 20.0, ..Motion::default() };
     let [alone, both] = [0.0, tables.body.load_inertia].map(|load| {

@@ -14,7 +14,7 @@ fn swinging(tables: &CompensationTables<f32>) -> Integral<f32> {
 }
 
 #[test]
-fn a_swinging_integral_waits_under_the_limit() {
+fn swinging_integral_is_held_under_the_limit() {
     let tables = tables();
     let mut integral = swinging(&tables);
     for cut in [-1.0, 1.0] {
@@ -26,7 +26,7 @@ fn a_swinging_integral_waits_under_the_limit() {
 }
 
 #[test]
-fn a_steady_integral_gives_up_what_the_limit_cuts_off() {
+fn steady_integral_gives_back_the_cut_torque() {
     let tables = tables();
     let mut integral = Integral::new();
     integral.integrate(&tables, 0.0, -1.0);

@@ -134,7 +134,7 @@ impl Rig {
 }
 
 #[test]
-fn edges_that_the_torque_has_pressed_take_most_of_the_lost_motion_out() {
+fn pressed_edges_remove_most_of_the_lost_motion() {
     // The flank in the direction of motion carries a link with friction: without an inverse the link lags by half the
     // play.
     let mut rig = Rig { guess: 0.4 * HALF, ..Rig::new(1.0, 2.0) };
@@ -143,7 +143,7 @@ fn edges_that_the_torque_has_pressed_take_most_of_the_lost_motion_out() {
 }
 
 #[test]
-fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
+fn wrong_inertia_is_estimated_from_the_torque() {
     let rig = Rig::new(1.0, 0.0);
     let total = rig.tables.body.motor_inertia + rig.tables.body.load_inertia;
     for ratio in [0.7, 1.6] {
@@ -167,7 +167,7 @@ fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
 }
 
 #[test]
-fn a_joint_at_rest_whose_gap_nobody_knows_stays_as_it_stands() {
+fn joint_at_rest_with_unknown_gap_stays() {
     let mut rig = Rig::new(1.0, 0.5);
     rig.motor[0] += 0.8 * HALF;
     for _ in 0..10_000 {
@@ -177,7 +177,7 @@ fn a_joint_at_rest_whose_gap_nobody_knows_stays_as_it_stands() {
 }
 
 #[test]
-fn it_takes_over_from_another_law_where_the_motor_stands_with_the_torque_that_holds_the_load() {
+fn takeover_holds_position_and_load() {
     let mut rig = Rig::new(1.0, 0.5);
     // The other law pushes with 3 N m against a held link.
     for _ in 0..30_000 {
@@ -192,7 +192,7 @@ fn it_takes_over_from_another_law_where_the_motor_stands_with_the_torque_that_ho
 }
 
 #[test]
-fn a_link_that_a_push_sends_to_the_other_flank_is_met_on_its_way() {
+fn pushed_link_is_met_on_its_way() {
     let mut rig = Rig::new(1.0, 0.5);
     let mut peak = |push: f64| {
         rig.push = push;
@@ -206,7 +206,7 @@ fn a_link_that_a_push_sends_to_the_other_flank_is_met_on_its_way() {
 }
 
 #[test]
-fn flanks_that_a_transmission_error_moves_are_followed_before_any_was_pressed() {
+fn transmission_error_is_followed_before_any_edge() {
     let mut rig = Rig { error: 2.0 * HALF, ..Rig::new(1.0, 2.0) };
     let rms = rig.sine(0.3, 0.5, 2.0);
     assert!(rms < HALF, "{rms} rad of an error of {} rad", rig.error);

@@ -65,7 +65,7 @@ fn unexplained_changes_trip_in_half_a_second() {
 }
 
 #[test]
-fn a_load_changes_flanks_eight_times_a_second_at_most() {
+fn load_changes_flanks_eight_times_a_second() {
     // Two changes in 0.2 s, like a gait, and forty per second, like a payload mode that is measured as a load.
     let [gait, mode] = [1000, 250].map(|dwell| {
         let (tables, good) = (tables(), state(&tables(), 0.9));
@@ -87,7 +87,7 @@ fn a_load_changes_flanks_eight_times_a_second_at_most() {
 }
 
 #[test]
-fn small_error_bears_a_drift_from_flank_to_flank() {
+fn small_error_permits_a_drift_between_flanks() {
     // Fifteen changes per second.
     let [calm, rough] = [0.1, 0.9].map(|part| trips_after(part, 667, |_| 0.0));
     assert!(calm.is_none() && rough.is_some_and(|periods| periods < 6000), "{calm:?} {rough:?}");
@@ -100,7 +100,7 @@ fn error_of_plain_control_does_not_trip() {
 }
 
 #[test]
-fn error_that_the_loop_has_found_does_not_trip() {
+fn error_found_at_takeover_does_not_trip() {
     let (tables, trips) = (tables(), |watch: &mut LoopMonitor<f32>| {
         let tables = tables();
         let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
@@ -116,7 +116,7 @@ fn error_that_the_loop_has_found_does_not_trip() {
 }
 
 #[test]
-fn time_away_grows_and_is_forgiven() {
+fn retry_time_grows_and_returns() {
     let tables = tables();
     let good = state(&tables, 0.0);
     let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
@@ -145,7 +145,7 @@ fn time_away_grows_and_is_forgiven() {
 }
 
 #[test]
-fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
+fn error_beyond_plain_control_trips_after_a_trip() {
     let tables = tables();
     let watched = MonitorInput { planned: 0.0, load: 0.0, has_error: true, external_impact: false };
     // If plain control recently left an error of twice half the lost motion, no smaller error trips; if not, a smaller
@@ -174,7 +174,7 @@ fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
 }
 
 #[test]
-fn numbers_that_are_none_pass_through_nothing() {
+fn load_that_is_no_number_leaves_the_monitor() {
     let tables = tables();
     let (state, mut watch) = (state(&tables, 0.1), LoopMonitor::new(&tables));
     watch.step(

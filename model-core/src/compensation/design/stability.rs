@@ -1,8 +1,8 @@
 //! Limits of bandwidth and control rate of a joint (K25).
 //!
 //! In the open gap, plain control moves the motor alone, with gains made for motor and link together. With the motor's
-//! inertia J_m, the total inertia J, the bandwidth w, the damper D on the motor ([`swinging_motor_damping`]), the lag t of
-//! the current loop, and a dead time of the torque's delay plus half a period, the loop is
+//! inertia J_m, the total inertia J, the bandwidth w, the damper D on the motor ([`swinging_motor_damping`]), the lag t
+//! of the current loop, and a dead time of the torque's delay plus half a period, the loop is
 //!
 //! ```text
 //! L(s) = (D s + 3 J w^2 + J w^3 / s) / (J_m s^2 (1 + t s)) e^(-s dead time)

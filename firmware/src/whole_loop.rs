@@ -10,7 +10,7 @@ use model_core::gears::Tables;
 use model_core::numbers::digest;
 use model_core::observer::{Memory, MemoryError};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
-use model_core::virtual_joint::faults::Faults;
+use model_core::virtual_joint::fault_injector::FaultInjector;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 use crate::batcher::Batcher;
@@ -70,7 +70,7 @@ pub struct WholeLoop<'t, P, const N: usize> {
     surroundings: &'t SurroundingsTable<f32>,
     joint: VirtualJoint<'t, f32, N>,
     /// Injected faults of the signals between joint and port.
-    faults: Faults<f32>,
+    faults: FaultInjector<f32>,
     port: P,
     /// The memory at hand.
     run_memory: RunMemory,
@@ -89,7 +89,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             tables,
             surroundings,
             joint: VirtualJoint::new(tables, surroundings),
-            faults: Faults::default(),
+            faults: FaultInjector::default(),
             port,
             run_memory: RunMemory::default(),
             trajectory: Trajectory::HOLD,
@@ -111,7 +111,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
 
     fn reset(&mut self, from_memory: bool) {
         self.joint.reset();
-        self.faults = Faults::default();
+        self.faults = FaultInjector::default();
         self.port.reset();
         if from_memory {
             self.run_memory.give(&mut self.port);
@@ -158,7 +158,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         let command = self.trajectory.at(table.period * f32::from(self.elapsed), table.turn);
         // A polynomial is valid in its own segment only; without a following knot it is held at the end of the segment.
         self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_SEGMENT);
-        let samples = self.faults.sense(self.joint.samples(), table);
+        let samples = self.faults.apply_to_samples(self.joint.samples(), table);
         let torque = match self.port.exchange(&samples, &command) {
             Ok(answer) => {
                 self.answer = answer;
@@ -166,7 +166,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
             }
             Err(_) => 0.0,
         };
-        self.joint.advance(self.faults.torque(torque), self.load_torque);
+        self.joint.advance(self.faults.apply_to_torque(torque), self.load_torque);
         self.digest = digest::chain(self.answer.digest(self.digest), self.joint.model().state_digest());
     }
 

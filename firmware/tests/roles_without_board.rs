@@ -15,8 +15,8 @@ use model_core::compensation::Command;
 use model_core::controller::trajectory::Trajectory;
 use model_core::numbers::digest;
 use model_core::virtual_joint::VirtualJoint;
-use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
-use model_core::virtual_joint::faults::MOST_FAULTS;
+use model_core::virtual_joint::fault::{EncoderShaft, Fault, FaultKind};
+use model_core::virtual_joint::fault_injector::MAX_FAULTS;
 use test_board::TestBoard;
 use test_roles::{LoopWork, ObserverWork, TestRole, control, controller, knot};
 
@@ -174,10 +174,14 @@ fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit()
     board.run(3);
     assert!(!taken(board.said()), "nothing runs yet");
     board.start(RunMode::Lockstep, 1, 1000);
-    for number in 0..=MOST_FAULTS {
-        board.send(&fault(if number == 0 { FaultKind::Frozen(Shaft::Motor) } else { FaultKind::Saturation(0.01) }));
+    for number in 0..=MAX_FAULTS {
+        board.send(&fault(if number == 0 {
+            FaultKind::Frozen(EncoderShaft::Motor)
+        } else {
+            FaultKind::Saturation(0.01)
+        }));
         board.run(3);
-        assert_eq!(taken(board.said()), number < MOST_FAULTS);
+        assert_eq!(taken(board.said()), number < MAX_FAULTS);
     }
     let commands = [knot(0)].into_iter().collect();
     board.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 60, commands }));

@@ -5,7 +5,7 @@ use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireTrajectory};
-use model_core::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
+use model_core::compensation::{Command, ControlOutput, ImpedancePoint, Motion, Position, Stage};
 use model_core::controller::Answer;
 use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
@@ -91,7 +91,7 @@ fn probes() -> Vec<Option<ProbeProgress<f32>>> {
 #[test]
 fn answers_round_trip() {
     for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain, Stage::Off, Stage::Reversed] {
-        let shaped = Shaped {
+        let shaped = ControlOutput {
             torque: 1.0,
             stage,
             flank: Some(Flank::Back),
@@ -170,7 +170,7 @@ fn longest_forms_fit_into_a_frame() {
     let answer = FromBoard::Answer(Answered {
         tick: u32::MAX,
         digest: u64::MAX,
-        shaped: (&Shaped::default()).into(),
+        shaped: (&ControlOutput::default()).into(),
         estimates: Some((&estimates()).into()),
         probed: Some(WireProbed::Done((1.0, 1.0, true))),
         computation: u16::MAX,

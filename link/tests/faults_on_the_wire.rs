@@ -2,7 +2,7 @@
 //! understand each other, whatever the types are called. Framing has tests of its own.
 
 use link::messages::{FromBoard, ToBoard, Trip};
-use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
+use model_core::virtual_joint::fault::{EncoderShaft, Fault, FaultKind, FixedPoint};
 use postcard::{from_bytes, to_slice};
 use serde::Serialize;
 
@@ -22,13 +22,13 @@ const HEAD: [u8; 18] =
 #[test]
 fn fault_bytes_are_unchanged() {
     let kinds: [(FaultKind<FixedPoint<f32>>, &[u8]); 9] = [
-        (FaultKind::Frozen(Shaft::Motor), &[0x00, 0x00]),
-        (FaultKind::Frozen(Shaft::Link), &[0x00, 0x01]),
-        (FaultKind::Offset(Shaft::Link, -300), &[0x01, 0x01, 0xd7, 0x04]),
-        (FaultKind::Noise(Shaft::Motor, 98_304), &[0x02, 0x00, 0x80, 0x80, 0x06]),
-        (FaultKind::MissingCounts(Shaft::Link, 42_949_672), &[0x03, 0x01, 0xa8, 0xb8, 0xbd, 0x14]),
-        (FaultKind::Eccentric(Shaft::Motor, -1193.5), &[0x04, 0x00, 0x00, 0x30, 0x95, 0xc4]),
-        (FaultKind::LostReadings(Shaft::Link, u32::MAX), &[0x05, 0x01, 0xff, 0xff, 0xff, 0xff, 0x0f]),
+        (FaultKind::Frozen(EncoderShaft::Motor), &[0x00, 0x00]),
+        (FaultKind::Frozen(EncoderShaft::Link), &[0x00, 0x01]),
+        (FaultKind::Offset(EncoderShaft::Link, -300), &[0x01, 0x01, 0xd7, 0x04]),
+        (FaultKind::Noise(EncoderShaft::Motor, 98_304), &[0x02, 0x00, 0x80, 0x80, 0x06]),
+        (FaultKind::MissingCounts(EncoderShaft::Link, 42_949_672), &[0x03, 0x01, 0xa8, 0xb8, 0xbd, 0x14]),
+        (FaultKind::Eccentric(EncoderShaft::Motor, -1193.5), &[0x04, 0x00, 0x00, 0x30, 0x95, 0xc4]),
+        (FaultKind::LostReadings(EncoderShaft::Link, u32::MAX), &[0x05, 0x01, 0xff, 0xff, 0xff, 0xff, 0x0f]),
         (FaultKind::TorqueBias(0.05, -0.25), &[0x06, 0xcd, 0xcc, 0x4c, 0x3d, 0x00, 0x00, 0x80, 0xbe]),
         (FaultKind::Saturation(1.5), &[0x07, 0x00, 0x00, 0xc0, 0x3f]),
     ];

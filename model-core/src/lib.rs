@@ -64,7 +64,7 @@ pub mod virtual_joint;
 pub mod width_probe;
 pub mod wiring;
 
-pub use compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
+pub use compensation::{Command, ControlOutput, ImpedancePoint, Motion, Position, Stage};
 pub use controller::{Answer, Controller, ControllerDesign};
 pub use gears::Flank;
 pub use observer::{Estimate, Estimates, Reading, Samples};

@@ -1,7 +1,7 @@
 //! The core's own steps on objects of the header, without the overhead of a call: for counting that overhead. Pointers
 //! come from a measuring program and are valid.
 
-use model_core::compensation::{Command, Compensation, Shaped};
+use model_core::compensation::{Command, Compensation, ControlOutput};
 use model_core::observer::{Estimates, MAPPED, Observer, Samples};
 
 use crate::compensation::{JointCompensation, JointMotion};
@@ -70,7 +70,9 @@ pub unsafe extern "C" fn joint_bare_compensation_step(
     command: *const Room,
     to: *mut Room,
 ) {
-    const { assert!(size_of::<Shaped<f32>>() <= size_of::<Room>()) };
+    const { assert!(size_of::<ControlOutput<f32>>() <= size_of::<Room>()) };
     // SAFETY: valid pointers, and storage that is large enough.
-    unsafe { to.cast::<Shaped<f32>>().write((*compensation).step(&*estimates, &*command.cast::<Command<f32>>())) };
+    unsafe {
+        to.cast::<ControlOutput<f32>>().write((*compensation).step(&*estimates, &*command.cast::<Command<f32>>()))
+    };
 }

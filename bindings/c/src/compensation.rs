@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 use core::mem::offset_of;
 use core::ptr;
 
-use model_core::compensation::{CommandRef, Compensation, ImpedancePoint, Motion, Shaped, Stage};
+use model_core::compensation::{CommandRef, Compensation, ControlOutput, ImpedancePoint, Motion, Stage};
 
 use model_core::gears::Flank;
 
@@ -170,9 +170,9 @@ impl JointTorque {
     /// # Safety
     /// The pointer is aligned, not NULL, and valid for writes.
     #[inline(always)]
-    unsafe fn give(of: &Shaped<f32>, to: *mut Self) {
+    unsafe fn give(of: &ControlOutput<f32>, to: *mut Self) {
         const NUMBERS: usize = 5;
-        alike!(JointTorque, Shaped<f32>, motor_torque_Nm: torque, demand_Nm: demand, load_Nm: load, trust: trust);
+        alike!(JointTorque, ControlOutput<f32>, motor_torque_Nm: torque, demand_Nm: demand, load_Nm: load, trust: trust);
         let stage = match of.stage {
             Stage::Touching => JointStage::Touching,
             Stage::Crossing => JointStage::Crossing,

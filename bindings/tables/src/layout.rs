@@ -48,18 +48,18 @@ structs! {
         substeps, half_count, substep, square, per_substep, mobility, wind_up_mobility, wind_up_yield,
         damping, half_damped, curvature, release
     }
-    gears::tables::Stage<f32> { rate, square_sixth, mobility, damping }
-    gears::tables::Units<f32> { drive, load_on_carrier, load_on_link, length, carrier_speed, motor_offset, link_offset }
+    gears::tables::StageTable<f32> { rate, square_sixth, mobility, damping }
+    gears::tables::UnitTable<f32> { drive, load_on_carrier, load_on_link, length, carrier_speed, motor_offset, link_offset }
     gears::tables::Rigid<f32> { drive, load }
     gears::tables::Mobility<f32> { sun, planet, carrier, link, wind_up, wind_up_stiffness, wind_up_damping }
     gears::tables::Excitation<f32> { phase_step, phase_advance, periods_per_turn, rate, harmonics }
     gears::tables::Spring<f32> { stiffness, damping }
     gears::tables::MeshTable<f32> { half_backlash, error, ripple }
-    gears::tables::Flow<f32> {
+    gears::tables::FlowTable<f32> {
         whole, early, late, early_inputs, late_inputs, whole_inputs, nodes, half, half_constant, whole_linear,
         whole_constant, step, reach, longest_advance
     }
-    gears::tables::Transition<f32> { in_phase, deviation, torques }
+    gears::tables::TransitionTable<f32> { in_phase, deviation, torques }
     gears::tables::Inputs<f32> { in_phase, deviation }
     observer::tables::ObserverTables<f32> {
         identity, control_rate, period, clock, counts, levers, current, drive, load, inertia, cogging, contact,
@@ -112,7 +112,7 @@ structs! {
     compensation::tables::CompensationTables<f32> {
         clock, gear, body, limits, law, crossing, landing, switching, rest, load, watch
     }
-    compensation::tables::ClockTable<f32> { rate, period }
+    compensation::tables::ControlClockTable<f32> { rate, period }
     compensation::tables::GearTable<f32> {
         motor_per_link, link_per_motor, turn, inverse_lever,
         mesh_phase_per_radian, radians_per_mesh, cogging_periods, cogging_phase_per_radian, losses
@@ -137,11 +137,11 @@ structs! {
         planned, measured, least, most_growth, transient_left, most_factor, smoothing, inverse_step
     }
     compensation::tables::RestTable<f32> { hunting, first_deadband, largest_deadband, deadband_left }
-    compensation::tables::LoadTable<f32> {
+    compensation::tables::LoadModelTable<f32> {
         variances, gain, rate_gain, rate_left, fastest, friction_slope, planned_friction_slope,
         frictions
     }
-    compensation::tables::WatchTable<f32> {
+    compensation::tables::MonitorTable<f32> {
         smoothing, least_demand, leaks, most, calm_per_half, memory, error_per_half, error_per_demand, first_away, longest_away,
         longer
     }

@@ -28,7 +28,7 @@ fn main() {
         joint.advance(torque, 0.0);
         if (period + 1) % rate == 0 {
             let estimates = control.estimates();
-            let error_turns = now.position.less(estimates.link.turns, estimates.link.fraction);
+            let error_turns = now.position.difference(estimates.link.turns, estimates.link.fraction);
             let half_backlash = estimates.half_backlash;
             // The half-gap of an equivalent gear is stated 1 m from the axis, so that it is half the lost motion in radians.
             println!(

@@ -1,7 +1,7 @@
 //! Metrics of the observer: estimates against the truth. Metrics of the motion are in `values`.
 
 use model_core::gears::Kinematics;
-use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::virtual_joint::fault::{EncoderShaft, FaultKind};
 use model_core::width_probe::ProbeProgress;
 
 use super::case::Case;
@@ -232,10 +232,10 @@ fn fault_metrics(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f6
     let of_output = |fault: &&Fault| {
         matches!(
             fault.kind,
-            FaultKind::Frozen(Shaft::Link)
-                | FaultKind::Offset(Shaft::Link, _)
-                | FaultKind::MissingCounts(Shaft::Link, _)
-                | FaultKind::LostReadings(Shaft::Link, _)
+            FaultKind::Frozen(EncoderShaft::Link)
+                | FaultKind::Offset(EncoderShaft::Link, _)
+                | FaultKind::MissingCounts(EncoderShaft::Link, _)
+                | FaultKind::LostReadings(EncoderShaft::Link, _)
         )
     };
     let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);

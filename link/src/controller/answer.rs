@@ -1,7 +1,7 @@
 //! Wire form of the outputs of a control period: the compensation's outputs, and all estimates if requested. Every
 //! field is SI.
 
-use model_core::compensation::{Shaped, Stage};
+use model_core::compensation::{ControlOutput, Stage};
 use model_core::controller::Answer;
 use model_core::gears::{Flank, sign};
 use model_core::observer::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
@@ -111,14 +111,14 @@ pub struct WireEstimates {
     pub shafts: [(i32, f32, f32); 2],
 }
 
-impl From<&Shaped<f32>> for WireShaped {
-    fn from(shaped: &Shaped<f32>) -> Self {
-        let Shaped { torque, stage, flank, demand, load, trust, short_of_torque, stepped_back } = *shaped;
+impl From<&ControlOutput<f32>> for WireShaped {
+    fn from(shaped: &ControlOutput<f32>) -> Self {
+        let ControlOutput { torque, stage, flank, demand, load, trust, short_of_torque, stepped_back } = *shaped;
         Self { torque, stage: stage as u8, side: sign(flank), demand, load, trust, short_of_torque, stepped_back }
     }
 }
 
-impl From<WireShaped> for Shaped<f32> {
+impl From<WireShaped> for ControlOutput<f32> {
     fn from(wire: WireShaped) -> Self {
         let WireShaped { torque, stage, side, demand, load, trust, short_of_torque, stepped_back } = wire;
         let stage = match stage {

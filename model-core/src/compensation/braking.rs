@@ -1,39 +1,36 @@
-//! Closing speed at which the motor can still brake the link (K12).
+//! Closing speed at which the motor can still brake the link.
 //!
-//! The linear law closes an error e = `error` at the speed w e (w = `rate`), which takes a deceleration of w^2 e.
-//! Beyond some milliradians the motor cannot brake that hard. With the deceleration A that torque, load and inertia
-//! allow (`most`), the link approaches a place no faster than
+//! The linear law closes an error e at the speed w e, which takes a deceleration of w^2 e. Beyond some milliradians the
+//! motor cannot brake that hard. With the deceleration A that torque, load and inertia allow, the link approaches a
+//! place no faster than v(A, e):
 //!
 //! ```text
-//! v(A, e) = w e                      up to e0 = A / w^2
-//!           sqrt(2 A (e - e0 / 2))   beyond
+//! (K12)  A = 0.9 (M_max + all dry friction +- (L + bias))/J,   e_0 = A/w^2
+//!        v(A, e) = w e up to e_0,   sqrt(2 A (e - e_0/2)) beyond;   a' = a - A (1 - e_0/e)
 //! ```
 //!
-//! Value and slope of both parts agree at e0. Up to e0, the linear law applies. A set-point that moves at the speed
-//! u = `speed` and brakes at the rate a = `braked` is approached in one of two ways:
+//! Value and slope of both parts agree at e_0. A set-point that moves at the speed u and brakes at b is approached
 //!
-//! - at v(A - a, e), if the link can brake beside the set-point;
-//! - at v(A, e + u^2 / (2 a)) - u towards the place where the set-point will stop, if the set-point stops before the link
-//!   reaches it, e > (A - a) (u / a)^2 / 2, or if it brakes harder than the link can, a >= A, unless w e is slower.
+//! - with v(A - b, e), if the link can brake beside the set-point;
+//! - with v(A, e + u^2/(2 b)) - u towards the place where the set-point will stop, if the set-point stops before the
+//!   link reaches it, e > (A - b) (u/b)^2/2, or if it brakes harder than the link can, b >= A, unless w e is slower.
 //!
-//! Up to e0 / 4 the linear law applies for every set-point. Otherwise a set-point that brakes about as hard as the link
+//! Up to e_0/4 the linear law applies for every set-point. Otherwise a set-point that brakes about as hard as the link
 //! can would permit no error: with an inertia known to 30 %, the link would be braked too early at every reversal of a
 //! sine, and lag although the torque suffices.
+//!
+//! Symbols: e = `error`, w = `rate`, A = `deceleration`, A J = `torques`, e_0 = `knee`, u = `speed`,
+//! b = `set_point_brakes`, v = `closing`, a' = `acceleration` of the [`Approach`].
 
 use super::load::LoadModel;
-use super::situation::Situation;
+use super::loop_state::LoopState;
+use super::thresholds::BrakingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 
-/// Smallest braking torque assumed for a link that a load drives: a weight that the motor cannot hold is approached
-/// with this torque [N m].
-fn least<T: Real>(tables: &CompensationTables<T>) -> T {
-    T::EIGHTH * tables.limits.motor
-}
-
 /// Motion of the set-point that the link closes on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Course<T: Real> {
+pub(super) struct SetPointMotion<T: Real> {
     /// Speed [rad/s].
     pub speed: T,
     /// Acceleration [rad/s^2].
@@ -44,7 +41,7 @@ pub(super) struct Course<T: Real> {
 
 /// Difference of set-point and link.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lag<T: Real> {
+pub(super) struct TrackingError<T: Real> {
     /// Set-point less link [rad].
     pub error: T,
     /// Rate of the error [rad/s].
@@ -64,7 +61,7 @@ pub(super) struct Approach<T: Real> {
 
 /// Braking torque and inertia of the link.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Braking<T: Real> {
+pub(super) struct BrakingLimit<T: Real> {
     /// Inertia of link and motor [kg m^2].
     inertia: T,
     /// Torque that brakes a link moving backwards, forwards [N m].
@@ -73,18 +70,17 @@ pub(super) struct Braking<T: Real> {
     rate: T,
 }
 
-impl<T: Real> Braking<T> {
-    /// Error over e0 up to which the linear law always applies [-]. Tuned on sines, moves and random motions that ask
-    /// for 0.5 to 3 times the torque: 1/8 changes the figures by less than a tenth, 1 makes the peaks of short moves up
-    /// to 1.5 times larger.
-    const LINEAR: T = T::QUARTER;
+impl<T: Real> BrakingLimit<T> {
+    const THRESHOLDS: BrakingThresholds<T> = BrakingThresholds::VALUES;
 
     /// Computes braking torques and inertia from the estimates.
-    pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, situation: &Situation<T>) -> Self {
-        let [bias, motor_friction] = situation.losses;
-        let [driven, still] = [load.even() + bias, tables.limits.motor + load.friction() + motor_friction];
-        let of = |torque: T| tables.limits.braking * if torque > least(tables) { torque } else { least(tables) };
-        Self { inertia: situation.inertia, torques: [of(still - driven), of(still + driven)], rate: tables.law.rate }
+    pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, state: &LoopState<T>) -> Self {
+        let [bias, motor_friction] = state.losses;
+        let [driven, still] = [load.gravity_torque() + bias, tables.limits.motor + load.friction() + motor_friction];
+        let least = Self::THRESHOLDS.min_torque_share * tables.limits.motor;
+        let torques = [still - driven, still + driven]
+            .map(|torque| tables.limits.braking * if torque > least { torque } else { least });
+        Self { inertia: state.inertia, torques, rate: tables.law.rate }
     }
 
     /// Acceleration of a link under the motor's torque or, in the open gap, under its load alone [rad/s^2].
@@ -92,47 +88,63 @@ impl<T: Real> Braking<T> {
         &self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
-        situation: &Situation<T>,
+        state: &LoopState<T>,
         torque: T,
     ) -> T {
-        if situation.open {
-            -load.free() * tables.body.inverse_load_inertia
+        if state.teeth_open {
+            -load.free_load_torque() * tables.body.inverse_load_inertia
         } else {
-            (torque - load.free()) / self.inertia
+            (torque - load.free_load_torque()) / self.inertia
         }
     }
 
     /// Returns the approach that replaces the linear law; `None` while the linear law applies. `error` is the set-point
     /// less the link [rad].
-    pub fn approach(&self, error: T, course: &Course<T>) -> Option<Approach<T>> {
-        let goes_on = if course.speed == T::ZERO { error > T::ZERO } else { course.speed > T::ZERO };
-        let [back, on] = self.torques;
-        let (side, against, against_return) = if goes_on { (T::ONE, on, back) } else { (-T::ONE, back, on) };
-        let [error, speed, acceleration, ahead] =
-            [error, course.speed, course.acceleration, course.ahead].map(|way| side * way);
-        let hardest = if ahead < acceleration { ahead } else { acceleration };
-        let braked = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
-        // The link cannot brake beside a set-point that brakes harder.
-        let unmatched = self.inertia * braked >= against;
-        let needed = self.inertia * self.rate * self.rate * error;
-        let (needed, against_error, left) = if error < T::ZERO {
-            (-needed, against_return, against_return)
+    pub fn approach(&self, error: T, set_point: &SetPointMotion<T>) -> Option<Approach<T>> {
+        let forward = if set_point.speed == T::ZERO { error > T::ZERO } else { set_point.speed > T::ZERO };
+        let [backward_torque, forward_torque] = self.torques;
+        // In the direction of the set-point's motion: `against` brakes the link, `back` brakes its way back.
+        let (side, against, back) = if forward {
+            (T::ONE, forward_torque, backward_torque)
         } else {
-            (needed, against, against - self.inertia * braked)
+            (-T::ONE, backward_torque, forward_torque)
         };
-        if needed <= Self::LINEAR * against_error || needed <= left && !unmatched {
+        let [error, speed, acceleration, ahead] =
+            [error, set_point.speed, set_point.acceleration, set_point.ahead].map(|value| side * value);
+        let hardest = if ahead < acceleration { ahead } else { acceleration };
+        let set_point_brakes = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
+        // The link cannot brake beside a set-point that brakes harder.
+        let unmatched = self.inertia * set_point_brakes >= against;
+        if self.linear_law_applies(error, against, back, set_point_brakes) {
             return None;
         }
-        let most = against / self.inertia;
+        let deceleration = against / self.inertia;
         let beside = if error < T::ZERO {
-            self.towards(against_return / self.inertia, error, acceleration)
+            self.towards(back / self.inertia, error, acceleration)
         } else if unmatched {
             Approach { closing: self.rate * error, acceleration }
         } else {
-            self.towards(most - braked, error, acceleration)
+            self.towards(deceleration - set_point_brakes, error, acceleration)
         };
-        let approach = if braked > T::ZERO { self.or_to_rest(beside, most, error, speed, braked) } else { beside };
+        let approach = if set_point_brakes > T::ZERO {
+            self.nearer_of_place_and_rest(beside, deceleration, error, speed, set_point_brakes)
+        } else {
+            beside
+        };
         Some(Approach { closing: side * approach.closing, acceleration: side * approach.acceleration })
+    }
+
+    /// True if the linear law needs no more torque than braking leaves, or the error is below e_0/4. `against` brakes
+    /// the link in the direction of the set-point's motion, `back` on its way back [N m].
+    fn linear_law_applies(&self, error: T, against: T, back: T, set_point_brakes: T) -> bool {
+        let unmatched = self.inertia * set_point_brakes >= against;
+        let needed = self.inertia * self.rate * self.rate * error;
+        let (needed, available, left) = if error < T::ZERO {
+            (-needed, back, back)
+        } else {
+            (needed, against, against - self.inertia * set_point_brakes)
+        };
+        needed <= Self::THRESHOLDS.linear_error_share * available || needed <= left && !unmatched
     }
 
     /// Torque through the teeth after a time [N m]. The demand jumps where braking begins, which its present rate does
@@ -141,39 +153,46 @@ impl<T: Real> Braking<T> {
         &self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
-        lag: &Lag<T>,
-        course: &Course<T>,
+        tracking: &TrackingError<T>,
+        set_point: &SetPointMotion<T>,
         time: T,
     ) -> T {
-        let rate = lag.rate + time * lag.acceleration;
-        let error = lag.error + time * (lag.rate + T::HALF * time * lag.acceleration);
-        let growth = (time / tables.crossing.lead) * (course.ahead - course.acceleration);
-        let course = Course {
-            speed: course.speed + time * (course.acceleration + T::HALF * growth),
-            acceleration: course.acceleration + growth,
-            ..*course
+        let rate = tracking.rate + time * tracking.acceleration;
+        let error = tracking.error + time * (tracking.rate + T::HALF * time * tracking.acceleration);
+        let growth = (time / tables.crossing.lead) * (set_point.ahead - set_point.acceleration);
+        let set_point = SetPointMotion {
+            speed: set_point.speed + time * (set_point.acceleration + T::HALF * growth),
+            acceleration: set_point.acceleration + growth,
+            ..*set_point
         };
-        let linear = Approach { closing: self.rate * error, acceleration: course.acceleration };
-        let approach = self.approach(error, &course).unwrap_or(linear);
+        let linear = Approach { closing: self.rate * error, acceleration: set_point.acceleration };
+        let approach = self.approach(error, &set_point).unwrap_or(linear);
         tables.body.load_inertia * approach.acceleration
             + tables.law.damping * (approach.closing + rate)
-            + load.even()
-            + load.drag()
-            + time * load.rate()
+            + load.gravity_torque()
+            + load.friction_torque()
+            + time * load.gravity_rate()
     }
 
     /// Approach to a set-point that moves and brakes: towards the place where the set-point will stop, if it stops
     /// first or brakes harder than the link can; otherwise `beside`.
-    fn or_to_rest(&self, beside: Approach<T>, most: T, error: T, speed: T, braked: T) -> Approach<T> {
-        let stands_in = speed / braked;
-        let to_rest = self.towards(most, error + T::HALF * speed * stands_in, T::ZERO);
+    fn nearer_of_place_and_rest(
+        &self,
+        beside: Approach<T>,
+        deceleration: T,
+        error: T,
+        speed: T,
+        set_point_brakes: T,
+    ) -> Approach<T> {
+        let time_to_rest = speed / set_point_brakes;
+        let to_rest = self.towards(deceleration, error + T::HALF * speed * time_to_rest, T::ZERO);
         let to_rest = Approach { closing: to_rest.closing - speed, ..to_rest };
-        let stands_first = if most > braked {
-            error > T::HALF * (most - braked) * stands_in * stands_in
+        let rests_first = if deceleration > set_point_brakes {
+            error > T::HALF * (deceleration - set_point_brakes) * time_to_rest * time_to_rest
         } else {
             to_rest.closing < beside.closing
         };
-        if stands_first { to_rest } else { beside }
+        if rests_first { to_rest } else { beside }
     }
 
     /// Approach to an accelerated place at the distance `way`. Near the knee the linear law takes over, which feeds
@@ -188,5 +207,102 @@ impl<T: Real> Braking<T> {
         let (speed, braking) = if way < T::ZERO { (-speed, braking) } else { (speed, -braking) };
         let linear = knee / size;
         Approach { closing: speed, acceleration: acceleration + (T::ONE - linear) * braking }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    /// Deceleration of 10 N m at 4 kg m^2, of which 0.9 are planned [rad/s^2].
+    const DECELERATION: f64 = 0.9 * 10.0 / 4.0;
+
+    /// Error at which the linear law needs this deceleration [rad].
+    const KNEE: f64 = DECELERATION / 100.0;
+
+    fn limit(gravity_torque: f64, friction: f64) -> BrakingLimit<f64> {
+        BrakingLimit::new(&tables(), &LoadModel::of_known(gravity_torque, friction), &state())
+    }
+
+    /// Set-point with a speed and a deceleration that stays.
+    fn set_point(speed: f64, acceleration: f64) -> SetPointMotion<f64> {
+        SetPointMotion { speed, acceleration, ahead: acceleration }
+    }
+
+    #[test]
+    fn error_up_to_the_knee_leaves_the_linear_law() {
+        let at_rest = set_point(0.0, 0.0);
+        assert!(limit(0.0, 0.0).approach(0.99 * KNEE, &at_rest).is_none());
+        assert!(limit(0.0, 0.0).approach(1.01 * KNEE, &at_rest).is_some());
+    }
+
+    #[test]
+    fn error_beyond_the_knee_closes_by_the_root() {
+        let approach = limit(0.0, 0.0).approach(9.0 * KNEE, &set_point(0.0, 0.0)).expect("an approach");
+        let speed = f64::sqrt(2.0 * DECELERATION * 8.5 * KNEE);
+        assert!((approach.closing - speed).abs() < 1e-9, "{} not {speed}", approach.closing);
+        assert!((approach.acceleration + DECELERATION * (1.0 - 1.0 / 9.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn approach_mirrors_with_the_error() {
+        let [on, back] = [1.0, -1.0].map(|side| {
+            let approach = limit(0.0, 0.0).approach(side * 4.0 * KNEE, &set_point(0.0, 0.0)).expect("an approach");
+            [side * approach.closing, side * approach.acceleration]
+        });
+        assert_eq!(on, back);
+    }
+
+    #[test]
+    fn load_that_brakes_permits_a_larger_error() {
+        let at_rest = set_point(0.0, 0.0);
+        assert!(limit(5.0, 0.0).approach(1.3 * KNEE, &at_rest).is_none(), "braked by the load");
+        assert!(limit(-5.0, 0.0).approach(0.7 * KNEE, &at_rest).is_some(), "driven by the load");
+    }
+
+    #[test]
+    fn friction_brakes_both_ways() {
+        let at_rest = set_point(0.0, 0.0);
+        assert!([1.4, -1.4].map(|side| limit(0.0, 5.0).approach(side * KNEE, &at_rest).is_none()) == [true; 2]);
+    }
+
+    #[test]
+    fn weight_beyond_the_motor_is_approached_with_the_least_torque() {
+        let approach = limit(-12.0, 0.0).approach(4.0 * KNEE, &set_point(0.0, 0.0)).expect("an approach");
+        let (deceleration, knee) = (DECELERATION / 8.0, KNEE / 8.0);
+        let speed = f64::sqrt(2.0 * deceleration * (4.0 * KNEE - 0.5 * knee));
+        assert!((approach.closing - speed).abs() < 1e-9);
+    }
+
+    #[test]
+    fn braking_set_point_leaves_less_for_the_error() {
+        let error = 0.5 * KNEE;
+        assert!(limit(0.0, 0.0).approach(error, &set_point(0.5, 0.0)).is_none());
+        assert!(limit(0.0, 0.0).approach(error, &set_point(0.5, -0.7 * DECELERATION)).is_some());
+    }
+
+    #[test]
+    fn error_below_a_quarter_of_the_knee_is_always_linear() {
+        let hard = set_point(0.5, -3.0 * DECELERATION);
+        assert!(limit(0.0, 0.0).approach(0.24 * KNEE, &hard).is_none());
+        assert!(limit(0.0, 0.0).approach(0.26 * KNEE, &hard).is_some());
+    }
+
+    #[test]
+    fn set_point_that_stops_first_is_approached_at_its_place_of_rest() {
+        let (error, speed, brakes) = (4.0 * KNEE, 0.02, 0.5 * DECELERATION);
+        let approach = limit(0.0, 0.0).approach(error, &set_point(speed, -brakes)).expect("an approach");
+        let rest = error + 0.5 * speed * speed / brakes;
+        let closing = f64::sqrt(2.0 * DECELERATION * (rest - 0.5 * KNEE)) - speed;
+        assert!((approach.closing - closing).abs() < 1e-9);
+    }
+
+    #[test]
+    fn link_in_the_open_gap_accelerates_under_its_load_alone() {
+        let (tables, load) = (tables(), LoadModel::of_known(3.0, 0.0));
+        let acceleration =
+            |teeth_open| limit(3.0, 0.0).acceleration(&tables, &load, &LoopState { teeth_open, ..state() }, 7.0);
+        assert_eq!((acceleration(true), acceleration(false)), (-1.0, 1.0));
     }
 }

@@ -1,6 +1,12 @@
-//! Integral of a PID on the motor position, with back-calculation: u_i in (K18).
+//! Integral of a PID on the motor position, with back-calculation.
+//!
+//! ```text
+//! (K18)  u_i' = J w^3 (r + s - theta_m) + w (torque - torque before the limit),   |u_i| <= M_max
+//! ```
+//!
+//! Symbols: u_i = `torque`, theta_m - s - r = `position_error`, torque less torque before the limit = `cut`.
 
-use super::swing::Swing;
+use super::torque_swing::TorqueSwing;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -10,12 +16,12 @@ use crate::numbers::arithmetic::clamp;
 pub(super) struct Integral<T: Real> {
     /// Torque of the integral [N m].
     torque: T,
-    swing: Swing<T>,
+    swing: TorqueSwing<T>,
 }
 
 impl<T: Real> Integral<T> {
     pub fn new() -> Self {
-        Self { torque: T::ZERO, swing: Swing::new() }
+        Self { torque: T::ZERO, swing: TorqueSwing::new() }
     }
 
     /// Torque of the integral [N m].
@@ -24,8 +30,8 @@ impl<T: Real> Integral<T> {
     }
 
     /// Checks the torque of the PID before its limit for a swing, once in `periods` periods [N m].
-    pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
-        self.swing.watch(tables, torque, periods);
+    pub fn detect_swing(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
+        self.swing.update(tables, torque, periods);
     }
 
     /// True if the torque has swung from side to side.
@@ -41,19 +47,56 @@ impl<T: Real> Integral<T> {
         }
     }
 
-    /// Updates the integral by the motor's position error `beyond` [rad] and the torque `cut` that the limit cut off [N
-    /// m]. While the torque swings from side to side, a cut torque does not show that the integral is too large, so it
-    /// is held. Integrating further under the limit would make a loop with a heavier link than designed swing from
-    /// limit to limit without end.
-    pub fn integrate(&mut self, tables: &CompensationTables<T>, beyond: T, cut: T) {
+    /// Updates the integral by the motor's position error `position_error` [rad] and the torque `cut` that the limit
+    /// cut off [N m]. While the torque swings from side to side, a cut torque does not show that the integral is too
+    /// large, so it is held. Integrating further under the limit would make a loop with a heavier link than designed
+    /// swing from limit to limit without end.
+    pub fn integrate(&mut self, tables: &CompensationTables<T>, position_error: T, cut: T) {
         if self.swings() && cut != T::ZERO {
             return;
         }
-        self.add(tables, tables.law.back_calculation * cut - tables.law.integral * beyond);
+        self.add(tables, tables.law.back_calculation * cut - tables.law.integral * position_error);
     }
 
     /// Follows another torque with the time constant of the loop [N m].
-    pub fn approach(&mut self, tables: &CompensationTables<T>, torque: T) {
+    pub fn decay_toward(&mut self, tables: &CompensationTables<T>, torque: T) {
         self.add(tables, tables.law.back_calculation * (torque - self.torque));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    #[test]
+    fn integral_stays_within_the_motor_limit() {
+        let mut integral = Integral::new();
+        integral.add(&tables(), 25.0);
+        assert_eq!(integral.torque(), 10.0);
+        integral.add(&tables(), -25.0);
+        assert_eq!(integral.torque(), -10.0);
+    }
+
+    #[test]
+    fn sum_that_is_not_finite_is_ignored() {
+        let mut integral = Integral::new();
+        integral.add(&tables(), 1.0);
+        [f64::NAN, f64::INFINITY].iter().for_each(|torque| integral.add(&tables(), *torque));
+        assert_eq!(integral.torque(), 1.0);
+    }
+
+    #[test]
+    fn integral_decays_toward_a_torque_with_the_loop() {
+        let mut integral = Integral::new();
+        (0..100).for_each(|_| integral.decay_toward(&tables(), 5.0));
+        assert!((integral.torque() - 5.0 * (1.0 - f64::powi(0.99, 100))).abs() < 1e-9);
+    }
+
+    #[test]
+    fn motor_beyond_its_set_point_lowers_the_integral() {
+        let mut integral = Integral::new();
+        integral.integrate(&tables(), 1e-3, 0.0);
+        assert_eq!(integral.torque(), -4e-3);
     }
 }

@@ -1,89 +1,93 @@
-//! Load model: splits the observer's load torque into even load and dry friction (`brakes`), which predicts the torque after a reversal.
-//! A load that may swing (`load_swing`) is followed more slowly than it swings.
+//! Load model: splits the observer's load torque into gravity torque and dry friction (`load_friction`), which predicts
+//! the torque after a reversal. A load that may swing (`payload_swing`) is followed more slowly than it swings.
 //!
 //! ```text
-//! (K6)  load torque = L + f dir,   L' = rate
+//! (K6)  load torque = L + f dir,   L' = rate,   Kalman filter for L and f
 //! ```
 //!
-//! Symbols: L = `even`, f = `friction`, dir = `direction()`.
+//! Symbols: L = `gravity_torque`, f = `friction`, dir = `direction()`, f dir = `friction_torque()`. L contains every
+//! torque that does not depend on the direction of motion: weight and steady pushes.
 
-use super::brakes::Brakes;
-use super::load_swing::LoadSwing;
-use super::situation::{Situation, planned_direction};
+use super::load_friction::LoadFrictionFilter;
+use super::loop_state::{LoopState, friction_direction};
+use super::payload_swing::PayloadSwing;
+use super::thresholds::LoadThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{clamp, deadband};
 use crate::observer::Estimates;
 
-/// Even load and dry friction of the load torque.
+/// Gravity torque and dry friction of the load torque.
 #[derive(Debug, Clone)]
 pub(super) struct LoadModel<T: Real> {
-    brakes: Brakes<T>,
+    filter: LoadFrictionFilter<T>,
     /// Speed of the set-point less speed of the link, smoothed [rad/s].
-    slip: T,
+    speed_error: T,
     /// Speed of the link over the speed at which dry friction reaches its full size [-].
     speed: T,
-    /// Rate of the even load [N m/s].
+    /// Rate of the gravity torque [N m/s].
     rate: T,
     /// Load torque of a link that no flank carries, smoothed [N m].
-    alone: Option<T>,
+    free_load: Option<T>,
     /// Largest recent load torque on the link, decaying [N m].
-    hardest: T,
+    peak_load: T,
     /// Direction of the link's last motion: 1, -1, or 0 before the first motion.
-    moved: T,
+    last_direction: T,
     /// State at the beginning of creeping, while the link creeps.
     creep: Option<Creep<T>>,
     /// 1 while the motor's limit cuts torque off, then decaying over the loop's transient [-].
-    cut: T,
+    saturation: T,
     /// Detector of a swinging payload.
-    swing: LoadSwing<T>,
+    swing: PayloadSwing<T>,
 }
 
-/// Even load before the link began to creep.
+/// Gravity torque before the link began to creep.
 #[derive(Debug, Clone, Copy)]
 struct Creep<T: Real> {
-    even: T,
-    /// Growth of the even load's variance while the link creeps.
+    gravity_torque: T,
+    /// Growth of the gravity torque's variance while the link creeps.
     variance: T,
 }
 
 impl<T: Real> LoadModel<T> {
-    /// Share of the speed of a creeping link that must exceed the creeping speed before the link counts as moving [-]:
-    /// noise reaches three times the creeping speed.
-    const STILL_CREEPS: T = T::THIRD;
-
-    /// Gain for a load that may swing, over the gain for other loads [-]: time constant of 25 ms, half the period of 20
-    /// Hz.
-    const SLOWLY: T = T::EIGHTH;
+    const THRESHOLDS: LoadThresholds<T> = LoadThresholds::VALUES;
 
     pub fn new() -> Self {
         Self {
-            brakes: Brakes::new(T::ZERO, [T::ONE; 2]),
-            slip: T::ZERO,
+            filter: LoadFrictionFilter::new(T::ZERO, [T::ONE; 2]),
+            speed_error: T::ZERO,
             speed: T::ZERO,
             rate: T::ZERO,
-            alone: None,
-            hardest: T::ZERO,
-            moved: T::ZERO,
+            free_load: None,
+            peak_load: T::ZERO,
+            last_direction: T::ZERO,
             creep: None,
-            cut: T::ZERO,
-            swing: LoadSwing::new(),
+            saturation: T::ZERO,
+            swing: PayloadSwing::new(),
         }
     }
 
+    /// Returns a model with a known gravity torque and friction [N m].
+    #[cfg(test)]
+    pub fn of_known(gravity_torque: T, friction: T) -> Self {
+        let mut load = Self::new();
+        (load.filter.gravity_torque, load.filter.friction) = (gravity_torque, friction);
+        load
+    }
+
     /// Records whether the motor's limit has cut torque off in this period.
-    pub fn take_cut(&mut self, tables: &CompensationTables<T>, is_cut: bool) {
-        self.cut = if is_cut { T::ONE } else { self.cut * tables.switching.transient_left };
+    pub fn record_saturation(&mut self, tables: &CompensationTables<T>, is_cut: bool) {
+        self.saturation = if is_cut { T::ONE } else { self.saturation * tables.switching.transient_left };
     }
 
     /// True while the load swings like a payload on a flexible arm.
-    pub fn swings(&self) -> bool {
+    pub fn payload_swings(&self) -> bool {
         self.swing.swings()
     }
 
     /// Gain over the gain for a load that does not swing [-].
-    fn pace(&self) -> T {
-        if self.swing.may_swing() { Self::SLOWLY } else { T::ONE }
+    fn gain_share(&self) -> T {
+        if self.swing.may_swing() { Self::THRESHOLDS.swing_gain_share } else { T::ONE }
     }
 
     /// Share and sign of the dry friction at the speed of the link, -1 to 1.
@@ -91,45 +95,45 @@ impl<T: Real> LoadModel<T> {
         clamp(self.speed, -T::ONE, T::ONE)
     }
 
-    pub fn even(&self) -> T {
-        self.brakes.even
+    pub fn gravity_torque(&self) -> T {
+        self.filter.gravity_torque
     }
 
-    /// Rate of the even load, as of a weight that turns with the link [N m/s].
-    pub fn rate(&self) -> T {
+    /// Rate of the gravity torque, as of a weight that turns with the link [N m/s].
+    pub fn gravity_rate(&self) -> T {
         self.rate
     }
 
     pub fn friction(&self) -> T {
-        self.brakes.friction
+        self.filter.friction
     }
 
     /// True if the link was recently pushed harder than the limit of the teeth. The limit is then suspended: the push
     /// loads the teeth anyway.
-    pub fn throws(&self, tables: &CompensationTables<T>) -> bool {
-        self.hardest > tables.limits.teeth
+    pub fn external_impact(&self, tables: &CompensationTables<T>) -> bool {
+        self.peak_load > tables.limits.teeth
     }
 
     /// Load torque on the link if no flank carried it [N m].
-    pub fn free(&self) -> T {
-        self.alone.unwrap_or(self.brakes.even + self.drag())
+    pub fn free_load_torque(&self) -> T {
+        self.free_load.unwrap_or(self.filter.gravity_torque + self.friction_torque())
     }
 
     /// Smallest torque that the start of a link at rest needs [N m]; 0 for a link that a flank must hold. A load within
     /// friction does not move a link without a flank, but a start must overcome that friction.
-    pub fn start(&self, tables: &CompensationTables<T>) -> T {
-        let held = deadband(self.brakes.even, tables.switching.measured + self.brakes.friction) == T::ZERO;
-        if held { T::TWO * tables.switching.measured + self.brakes.friction } else { T::ZERO }
+    pub fn start_torque(&self, tables: &CompensationTables<T>) -> T {
+        let held = deadband(self.filter.gravity_torque, tables.switching.measured + self.filter.friction) == T::ZERO;
+        if held { T::TWO * tables.switching.measured + self.filter.friction } else { T::ZERO }
     }
 
     /// Dry friction at a planned speed [N m].
-    pub fn planned_drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.brakes.friction * planned_direction(tables, speed)
+    pub fn planned_friction(&self, tables: &CompensationTables<T>, speed: T) -> T {
+        self.filter.friction * friction_direction(tables, speed)
     }
 
     /// Dry friction at the speed of the link [N m].
-    pub fn drag(&self) -> T {
-        self.brakes.friction * self.direction()
+    pub fn friction_torque(&self) -> T {
+        self.filter.friction * self.direction()
     }
 
     /// True if the link is so slow that any part of its friction may act.
@@ -139,99 +143,121 @@ impl<T: Real> LoadModel<T> {
 
     /// Updates the model by the estimated load torque, unless the teeth are known to be open. `acts`: the load is fed
     /// forward; only then does its swing concern the loop.
-    pub fn observe(
+    pub fn update(
         &mut self,
         tables: &CompensationTables<T>,
         estimates: &Estimates<T>,
-        situation: &Situation<T>,
+        state: &LoopState<T>,
         acts: bool,
     ) {
-        self.follow(tables, situation);
-        // The torque of a weight changes only while the link turns.
-        if self.creeps() {
-            self.rate = T::ZERO;
-        }
-        self.brakes.even =
-            clamp(self.brakes.even + tables.clock.period * self.rate, -tables.limits.motor, tables.limits.motor);
-        // Without the link's position, the integral of plain control takes over.
-        if !situation.feels {
-            self.brakes.even -= tables.law.back_calculation * self.brakes.even;
-        }
+        self.estimate_speed(tables, state);
+        self.predict(tables, state);
         let torque = estimates.load_torque;
-        let known = torque.valid && torque.value.is_finite() && situation.feels;
+        let known = torque.valid && torque.value.is_finite() && state.link_seen;
+        let carried = known && !state.teeth_open;
+        self.record_peak(tables, known.then_some(torque.value));
         // A load beyond the motor's limit cannot be carried.
-        let held = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
-        self.hardest *= tables.switching.transient_left;
-        let push = clamp(torque.value.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
-        if known && push > self.hardest {
-            self.hardest = push;
-        }
-        let carried = known && !situation.open;
-        self.swing.take(tables, (carried && acts).then_some(held - self.drag()));
+        let load = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
+        self.swing.update(tables, (carried && acts).then_some(load - self.friction_torque()));
         // While the torque alternates between the limits the load is known with a lag. Friction is then not estimated,
         // because it would absorb the lag.
-        if carried && self.cut > T::HALF {
-            self.brakes.even += self.pace() * tables.load.gain * (held - self.brakes.even - self.drag());
+        if carried && self.saturation > Self::THRESHOLDS.saturation {
+            self.follow(tables, load);
         } else if carried {
-            self.learn(tables, held);
+            self.correct(tables, load);
         } else {
             self.rate *= tables.load.rate_left;
         }
-        let before = self.free();
-        self.alone = (known && !carried).then(|| before + tables.switching.smoothing * (held - before));
-        // Friction alone holds a link at rest without a flank.
-        if let Some(alone) = self.alone
+        self.update_free_load(tables, (known && !carried).then_some(load));
+    }
+
+    /// Advances the gravity torque by a period. The torque of a weight changes only while the link turns. Without the
+    /// link's position the gravity torque decays, because the integral of plain control takes over.
+    fn predict(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>) {
+        if self.creeps() {
+            self.rate = T::ZERO;
+        }
+        let limit = tables.limits.motor;
+        self.filter.gravity_torque = clamp(self.filter.gravity_torque + tables.clock.period * self.rate, -limit, limit);
+        if !state.link_seen {
+            self.filter.gravity_torque -= tables.law.back_calculation * self.filter.gravity_torque;
+        }
+    }
+
+    /// Records the largest recent load torque, which decays.
+    fn record_peak(&mut self, tables: &CompensationTables<T>, torque: Option<T>) {
+        self.peak_load *= tables.switching.transient_left;
+        let Some(torque) = torque else { return };
+        let push = clamp(torque.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
+        if push > self.peak_load {
+            self.peak_load = push;
+        }
+    }
+
+    /// Follows a measured load in the gravity torque alone; friction stays.
+    fn follow(&mut self, tables: &CompensationTables<T>, torque: T) {
+        self.filter.gravity_torque +=
+            self.gain_share() * tables.load.gain * (torque - self.filter.gravity_torque - self.friction_torque());
+    }
+
+    /// Smooths the load torque of a link that no flank carries. Friction alone holds such a link at rest.
+    fn update_free_load(&mut self, tables: &CompensationTables<T>, torque: Option<T>) {
+        let last = self.free_load_torque();
+        self.free_load = torque.map(|torque| last + tables.switching.smoothing * (torque - last));
+        if let Some(free_load) = self.free_load
             && self.creeps()
         {
-            self.brakes.even = clamp(self.brakes.even, alone - self.brakes.friction, alone + self.brakes.friction);
+            self.filter.gravity_torque =
+                clamp(self.filter.gravity_torque, free_load - self.filter.friction, free_load + self.filter.friction);
         }
     }
 
-    /// Integrates an error into the even load, where a flank should carry but the teeth are open and the force is
+    /// Integrates an error into the gravity torque, where a flank should carry but the teeth are open and the force is
     /// unknown.
-    pub fn lean(&mut self, tables: &CompensationTables<T>, error: T) {
-        let next = self.brakes.even + tables.law.integral * error;
+    pub fn integrate_error(&mut self, tables: &CompensationTables<T>, error: T) {
+        let next = self.filter.gravity_torque + tables.law.integral * error;
         if next.is_finite() {
-            self.brakes.even = clamp(next, -tables.limits.motor, tables.limits.motor);
+            self.filter.gravity_torque = clamp(next, -tables.limits.motor, tables.limits.motor);
         }
     }
 
-    /// Estimates the speed of the link from the set-point, which has no noise, and the smoothed slip.
-    fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>) {
-        let asked = situation.link_speed + situation.error_rate;
-        let slip = self.slip + tables.switching.smoothing * (situation.error_rate - self.slip);
-        let speed = tables.load.friction_slope * (asked - slip);
+    /// Estimates the speed of the link from the set-point, which has no noise, and the smoothed speed error.
+    fn estimate_speed(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>) {
+        let asked = state.link_speed + state.error_rate;
+        let speed_error = self.speed_error + tables.switching.smoothing * (state.error_rate - self.speed_error);
+        let speed = tables.load.friction_slope * (asked - speed_error);
         if speed.is_finite() {
-            (self.slip, self.speed) = (slip, speed);
+            (self.speed_error, self.speed) = (speed_error, speed);
         }
     }
 
-    /// Updates even load and friction by a measurement while a flank carries. On a creeping link any part of the
-    /// friction may act: the sum is followed in the even load until the link moves again.
-    fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
-        let [growth_even, growth_friction, noise] = tables.load.variances;
-        let pace = self.pace();
-        let [growth_even, growth_friction] = [growth_even, growth_friction].map(|growth| pace * pace * growth);
+    /// Updates gravity torque and friction by a measurement while a flank carries. On a creeping link any part of the
+    /// friction may act: the sum is followed in the gravity torque until the link moves again.
+    fn correct(&mut self, tables: &CompensationTables<T>, torque: T) {
+        let [gravity_growth, friction_growth, noise] = tables.load.variances;
+        let gain_share = self.gain_share();
+        let [gravity_growth, friction_growth] =
+            [gravity_growth, friction_growth].map(|growth| gain_share * gain_share * growth);
         // While the link creeps, a speed within the noise does not count as motion.
-        if creeps(if self.creep.is_some() { Self::STILL_CREEPS * self.speed } else { self.speed }) {
-            let even = self.brakes.even;
-            let creep = self.creep.get_or_insert(Creep { even, variance: T::ZERO });
-            creep.variance += growth_even;
-            self.brakes.even += self.pace() * tables.load.gain * (torque - self.brakes.even - self.drag());
+        if creeps(if self.creep.is_some() { Self::THRESHOLDS.creep_release_share * self.speed } else { self.speed }) {
+            let gravity_torque = self.filter.gravity_torque;
+            let creep = self.creep.get_or_insert(Creep { gravity_torque, variance: T::ZERO });
+            creep.variance += gravity_growth;
+            self.follow(tables, torque);
             return;
         }
         let direction = self.direction();
         if let Some(creep) = self.creep.take()
-            && self.moved * direction <= T::ZERO
+            && self.last_direction * direction <= T::ZERO
         {
-            let followed = self.brakes.even + self.brakes.friction * direction;
-            self.brakes.even = creep.even;
-            self.brakes.grow([creep.variance, T::ZERO]);
-            self.brakes.take(followed, direction, tables.load.gain * noise, tables.limits.motor);
+            let followed = self.filter.gravity_torque + self.filter.friction * direction;
+            self.filter.gravity_torque = creep.gravity_torque;
+            self.filter.predict([creep.variance, T::ZERO]);
+            self.filter.correct(followed, direction, tables.load.gain * noise, tables.limits.motor);
         }
-        self.moved = direction;
-        self.brakes.grow([growth_even, growth_friction]);
-        let by = self.brakes.take(torque, direction, noise, tables.limits.motor);
+        self.last_direction = direction;
+        self.filter.predict([gravity_growth, friction_growth]);
+        let by = self.filter.correct(torque, direction, noise, tables.limits.motor);
         self.rate = clamp(self.rate + tables.load.rate_gain * by, -tables.load.fastest, tables.load.fastest);
     }
 }
@@ -239,4 +265,151 @@ impl<T: Real> LoadModel<T> {
 /// True if a link at this speed is so slow that any part of its friction may act.
 fn creeps<T: Real>(speed: T) -> bool {
     speed < T::ONE && speed > -T::ONE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::{state, tables};
+
+    /// Estimates with a load torque [N m].
+    fn measured(torque: f64) -> Estimates<f64> {
+        let mut estimates = Estimates::default();
+        (estimates.load_torque.value, estimates.load_torque.valid) = (torque, true);
+        estimates
+    }
+
+    /// State of a link that moves as asked [rad/s].
+    fn moving(speed: f64) -> LoopState<f64> {
+        LoopState { link_speed: speed, ..state() }
+    }
+
+    #[test]
+    fn gravity_torque_follows_a_load_at_rest() {
+        let mut load = LoadModel::new();
+        (0..2000).for_each(|_| load.update(&tables(), &measured(3.0), &state(), true));
+        assert!((load.gravity_torque() - 3.0).abs() < 1e-6 && load.friction() == 0.0);
+    }
+
+    #[test]
+    fn motion_both_ways_finds_the_friction() {
+        let mut load = LoadModel::new();
+        for period in 0..20_000 {
+            let direction = if (period / 500) % 2 == 0 { 1.0 } else { -1.0 };
+            load.update(&tables(), &measured(2.0 + direction), &moving(0.1 * direction), true);
+        }
+        assert!((load.gravity_torque() - 2.0).abs() < 0.1 && (load.friction() - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn invalid_load_changes_nothing() {
+        for (value, valid) in [(3.0, false), (f64::NAN, true), (f64::INFINITY, true)] {
+            let (mut load, mut estimates) = (LoadModel::of_known(1.0, 0.5), measured(value));
+            estimates.load_torque.valid = valid;
+            load.update(&tables(), &estimates, &state(), true);
+            assert_eq!((load.gravity_torque(), load.friction()), (1.0, 0.5));
+            assert!(!load.external_impact(&tables()));
+        }
+    }
+
+    #[test]
+    fn load_beyond_the_motor_counts_as_its_limit() {
+        let mut load = LoadModel::new();
+        (0..2000).for_each(|_| load.update(&tables(), &measured(50.0), &state(), true));
+        assert!((load.gravity_torque() - 10.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn push_beyond_the_teeth_is_an_impact_for_a_transient() {
+        let impact = |torque: f64, after: u32| {
+            let mut load = LoadModel::new();
+            load.update(&tables(), &measured(torque), &state(), true);
+            (0..after).for_each(|_| load.update(&tables(), &measured(0.0), &state(), true));
+            load.external_impact(&tables())
+        };
+        assert!(!impact(7.9, 0) && impact(8.1, 0) && impact(-8.1, 0));
+        assert!(impact(20.0, 80) && !impact(20.0, 100), "0.99^91 of 20 N m are 8 N m");
+        assert!(!impact(1e9, 100), "a push counts twice the motor's limit at most");
+    }
+
+    #[test]
+    fn unseen_link_hands_its_load_to_the_integral() {
+        let mut load = LoadModel::of_known(5.0, 0.0);
+        load.update(&tables(), &measured(5.0), &LoopState { link_seen: false, ..state() }, true);
+        assert!((load.gravity_torque() - 4.95).abs() < 1e-12);
+    }
+
+    #[test]
+    fn friction_has_the_sign_of_the_motion() {
+        let mut load = LoadModel::of_known(0.0, 2.0);
+        let friction = [0.02, -0.02, 0.005].map(|speed| {
+            load.estimate_speed(&tables(), &moving(speed));
+            load.friction_torque()
+        });
+        assert_eq!(friction, [2.0, -2.0, 1.0]);
+    }
+
+    #[test]
+    fn start_of_a_held_link_needs_its_friction() {
+        let start = |gravity_torque| LoadModel::of_known(gravity_torque, 1.0).start_torque(&tables());
+        // Friction and the uncertainty of 0.2 N m hold the link.
+        assert_eq!([0.0, 1.19, -1.19, 1.21].map(start), [1.4, 1.4, 1.4, 0.0]);
+    }
+
+    #[test]
+    fn open_teeth_leave_the_link_to_its_free_load() {
+        let mut load = LoadModel::of_known(1.0, 0.0);
+        let open = LoopState { teeth_open: true, ..moving(0.1) };
+        (0..500).for_each(|_| load.update(&tables(), &measured(3.0), &open, true));
+        assert!((load.free_load_torque() - 3.0).abs() < 1e-4);
+        assert_eq!(load.gravity_torque(), 1.0);
+        load.update(&tables(), &measured(3.0), &moving(0.1), true);
+        assert_eq!(load.free_load_torque(), load.gravity_torque() + load.friction_torque());
+    }
+
+    #[test]
+    fn cut_torque_keeps_the_friction() {
+        let friction = |is_cut| {
+            let mut load = LoadModel::of_known(0.0, 1.0);
+            load.record_saturation(&tables(), is_cut);
+            load.update(&tables(), &measured(5.0), &moving(0.1), true);
+            load.friction()
+        };
+        assert_eq!(friction(true), 1.0);
+        assert!(friction(false) > 1.0);
+    }
+
+    #[test]
+    fn integrated_error_stays_within_the_motor_limit() {
+        let mut load = LoadModel::of_known(9.999, 0.0);
+        load.integrate_error(&tables(), 1.0);
+        assert_eq!(load.gravity_torque(), 10.0);
+        load.integrate_error(&tables(), f64::NAN);
+        assert_eq!(load.gravity_torque(), 10.0);
+    }
+
+    #[test]
+    fn link_within_the_noise_of_its_speed_still_creeps() {
+        let friction = |speed: f64| {
+            let mut load = LoadModel::of_known(0.0, 1.0);
+            load.update(&tables(), &measured(5.0), &moving(0.0), true);
+            load.update(&tables(), &measured(5.0), &moving(speed), true);
+            load.friction()
+        };
+        // Three times 0.01 rad/s.
+        assert_eq!(friction(0.029), 1.0);
+        assert!(friction(0.031) != 1.0);
+    }
+
+    #[test]
+    fn load_that_may_swing_is_followed_slower() {
+        let followed = |acts: bool| {
+            let mut load = LoadModel::of_known(0.0, 0.0);
+            // Only a load that is fed forward can be shown not to swing.
+            (0..1100).for_each(|_| load.update(&tables(), &measured(0.0), &state(), acts));
+            load.update(&tables(), &measured(1.0), &state(), acts);
+            load.gravity_torque()
+        };
+        assert!((followed(true) - 0.3).abs() < 1e-9 && (followed(false) - 0.3 / 8.0).abs() < 1e-9);
+    }
 }

@@ -15,7 +15,7 @@ pub struct Position<T: Real = f32> {
 
 impl<T: Real> Position<T> {
     /// Difference to another angle, `self` minus the other [turns].
-    pub fn less(&self, turns: i32, fraction: T) -> T {
+    pub fn difference(&self, turns: i32, fraction: T) -> T {
         T::from_i64(i64::from(self.turns) - i64::from(turns)) + (self.fraction - fraction)
     }
 }
@@ -138,12 +138,12 @@ pub enum Stage {
 /// Output of the compensation in one control period. The numbers come first, so that they are copied in one block.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
-pub struct Shaped<T: Real = f32> {
+pub struct ControlOutput<T: Real = f32> {
     /// Torque command of the motor [N m].
     pub torque: T,
     /// Torque through the teeth at the end of a crossing that begins now; zero under plain control [N m].
     pub demand: T,
-    /// Estimated load torque: even load, dry friction [N m].
+    /// Estimated load torque: gravity torque, dry friction [N m].
     pub load: [T; 2],
     /// Share of the compensation in the torque, 0 to 1; plain control has the rest.
     pub trust: T,
@@ -156,4 +156,20 @@ pub struct Shaped<T: Real = f32> {
     /// True if the torque was cut off at the motor's limit, or if the link is braked early because of that limit: the
     /// link does not follow its set-point.
     pub short_of_torque: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn difference_counts_whole_turns() {
+        let position = Position { turns: -2, fraction: 0.25 };
+        assert_eq!(position.difference(3, 0.5), -5.25);
+    }
+
+    #[test]
+    fn difference_at_the_ends_of_the_turns_does_not_overflow() {
+        assert_eq!(Position { turns: i32::MAX, fraction: 0.0 }.difference(i32::MIN, 0.0), 4_294_967_295.0);
+    }
 }

@@ -1,15 +1,18 @@
-//! One control period of the compensation: selects the control law, blends compensation with plain control, limits the torque.
+//! One control period of the compensation: selects the control law, blends compensation with plain control, limits the
+//! torque.
 
+use super::control_demand::ControlDemand;
 use super::flank::FlankControl;
 use super::impedance::ImpedanceLaw;
 use super::inverse::BacklashInverse;
 use super::load::LoadModel;
-use super::plain::Plain;
+use super::loop_state::LoopState;
+use super::monitor::{LoopMonitor, MonitorInput};
+use super::plain::PlainControl;
 use super::position::PositionLaw;
-use super::set_point::{Command, CommandRef, Shaped, Stage};
-use super::situation::Situation;
-use super::turn::Turn;
-use super::watch::{Watch, Watched};
+use super::set_point::{Command, CommandRef, ControlOutput, Stage};
+use super::slow_task::SlowTask;
+use super::thresholds::EstimateBounds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -58,15 +61,15 @@ pub struct Compensation<'tables, T: Real> {
     flank: FlankControl<T>,
     position: PositionLaw<T>,
     impedance: ImpedanceLaw<T>,
-    plain: Plain<T>,
+    plain: PlainControl<T>,
     inverse: BacklashInverse<T>,
     /// Offset of the motor encoder against the output encoder at the link, as last valid alone or as part of the gap
     /// coordinate [rad].
-    offset: T,
+    encoder_offset: T,
     /// Share of the compensation in the torque: 0 plain control, 1 compensation [-].
     trust: T,
-    watch: Watch<T>,
-    turn: Turn,
+    monitor: LoopMonitor<T>,
+    task: SlowTask,
 }
 
 impl<'tables, T: Real> Compensation<'tables, T> {
@@ -78,50 +81,50 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             flank: FlankControl::new(),
             position: PositionLaw::new(),
             impedance: ImpedanceLaw::new(),
-            plain: Plain::new(),
+            plain: PlainControl::new(),
             inverse: BacklashInverse::new(tables),
-            offset: T::ZERO,
+            encoder_offset: T::ZERO,
             trust: T::ZERO,
-            watch: Watch::new(tables),
-            turn: Turn::Judges,
+            monitor: LoopMonitor::new(tables),
+            task: SlowTask::Monitor,
         }
     }
 
     /// Restores the designed state part by part: assigning a new compensation would need as much stack again.
     pub fn restart(&mut self) {
         self.load = LoadModel::new();
-        self.offset = T::ZERO;
-        self.watch = Watch::new(self.tables);
+        self.encoder_offset = T::ZERO;
+        self.monitor = LoopMonitor::new(self.tables);
         self.inverse = BacklashInverse::new(self.tables);
-        self.let_go();
+        self.reset_control();
     }
 
-    /// Resets flank, control laws and trust; estimates of load and offset stay.
-    fn let_go(&mut self) {
+    /// Resets flank, control laws and trust; estimates of load and encoder offset stay.
+    fn reset_control(&mut self) {
         self.flank = FlankControl::new();
-        self.position.forget();
-        self.impedance.forget();
-        self.plain = Plain::new();
-        self.inverse.forget_places();
+        self.position.reset();
+        self.impedance.reset();
+        self.plain = PlainControl::new();
+        self.inverse.reset_edges();
         self.trust = T::ZERO;
     }
 
     /// Returns zero torque while the motor position is unknown, or the sign of torque or motor encoder is wrong.
     #[cold]
-    fn stay_off(&mut self, stage: Stage) -> Shaped<T> {
-        self.let_go();
-        Shaped { stage, load: [self.load.even(), self.load.friction()], ..Shaped::default() }
+    fn stay_off(&mut self, stage: Stage) -> ControlOutput<T> {
+        self.reset_control();
+        ControlOutput { stage, load: [self.load.gravity_torque(), self.load.friction()], ..ControlOutput::default() }
     }
 
     /// Computes the torque of one control period from estimates and command. The torque is always finite and within the
     /// motor's limit.
     #[inline]
-    pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
+    pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> ControlOutput<T> {
         self.step_by_reference(estimates, command.by_reference())
     }
 
     /// Computes the torque of one control period from a borrowed command.
-    pub fn step_by_reference(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> Shaped<T> {
+    pub fn step_by_reference(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> ControlOutput<T> {
         let tables = self.tables;
         if estimates.torque_response == TorqueResponse::Reversed {
             return self.stay_off(Stage::Reversed);
@@ -129,111 +132,199 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         if !estimates.source.allows_control() {
             return self.stay_off(Stage::Off);
         }
-        let known = estimates.encoder_offset.valid || estimates.gap.valid;
-        if known && estimates.encoder_offset.value.is_finite() {
-            self.offset = estimates.encoder_offset.value;
+        let state = self.loop_state(estimates, command);
+        self.update_load(estimates, &state, command);
+        let demand = self.demand(&state, command);
+        if self.task == SlowTask::Monitor {
+            self.monitor(&state, &command);
         }
-        let mut situation = Situation::new(tables, estimates, self.offset, command);
-        // A motor that has arrived early touches its flank now and then, but the flank carries no load.
-        situation.open |= self.flank.waits();
-        let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
-        if leans && matches!(command, CommandRef::Position { .. }) {
-            self.load.lean(tables, self.position.heeded(&situation));
-        }
-        self.load.observe(tables, estimates, &situation, self.trust == T::ONE);
-        let intent = match command {
-            CommandRef::Position { now, ahead } => {
-                if situation.feels && self.turn == Turn::Observes {
-                    self.inverse.observe(tables, &situation, now);
-                }
-                self.position.intend(tables, &self.load, &situation, now, ahead)
-            }
-            CommandRef::Impedance(point) => self.impedance.intend(tables, &self.load, &situation, point),
-        };
-        if self.turn == Turn::Judges {
-            let watched = self.watched(&situation, &command);
-            // Flank changes count as hunting only while the set-point is plausible.
-            let makes_sense = watched.has_error || matches!(command, CommandRef::Impedance(_));
-            let acting = (self.trust > T::ZERO && situation.sees && makes_sense).then(|| self.flank.flank());
-            self.watch.step(tables, &situation, &watched, acting);
-        }
-        let stepped_back = self.watch.is_away();
-        let sees = situation.sees && intent.is_finite() && !stepped_back;
-        let change = if sees { tables.law.trust_step } else { -tables.law.trust_step };
+        let stepped_back = self.monitor.is_tripped();
+        let acts = state.gap_known && demand.is_finite() && !stepped_back;
+        let change = if acts { tables.law.trust_step } else { -tables.law.trust_step };
         self.trust = clamp(self.trust + change, T::ZERO, T::ONE);
         // Plain control is computed only while it has a share in the torque.
-        let shares = !sees || self.trust < T::ONE;
-        let alone = if shares { self.alone(&situation, &command) } else { T::ZERO };
-        let compensated = if sees {
-            self.flank.step(tables, &situation, &intent)
+        let plain_acts = !acts || self.trust < T::ONE;
+        let plain_torque = if plain_acts { self.plain_torque(&state, &command) } else { T::ZERO };
+        let compensated = if acts {
+            self.flank.step(tables, &state, &demand)
         } else {
-            self.flank.forget(&situation);
-            self.position.forget();
-            self.impedance.forget();
-            alone
+            self.flank.reset(&state);
+            self.position.reset();
+            self.impedance.reset();
+            plain_torque
         };
-        let wanted = alone + self.trust * (compensated - alone);
+        let wanted = plain_torque + self.trust * (compensated - plain_torque);
         let may_act = wanted.is_finite() && estimates.torque_response != TorqueResponse::Tested;
         let torque = if may_act { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
-        self.load.take_cut(tables, torque != wanted);
-        let cut = torque - wanted;
-        self.plain.take(tables, &situation, cut);
-        let inverse_acts = shares && situation.feels && matches!(command, CommandRef::Position { .. });
-        self.inverse.take(tables, &situation, inverse_acts.then_some(cut));
-        if self.turn == Turn::Learns {
-            self.inverse.learn(tables, torque);
-        }
-        self.turn = self.turn.next();
-        let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
-        Shaped {
+        self.apply_torque(&state, command, torque, wanted, plain_acts);
+        ControlOutput {
             torque: torque * tables.gear.link_per_motor,
-            stage,
+            stage: if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain },
             flank: Some(self.flank.flank()),
-            demand: if sees { intent.demand_ahead } else { T::ZERO },
-            load: [self.load.even(), self.load.friction()],
+            demand: if acts { demand.after_crossing } else { T::ZERO },
+            load: [self.load.gravity_torque(), self.load.friction()],
             trust: self.trust,
             stepped_back,
-            short_of_torque: torque != wanted || sees && intent.brakes_early,
+            short_of_torque: torque != wanted || acts && demand.brakes_early,
         }
     }
 
-    /// Torque of plain control [N m].
-    fn alone(&mut self, situation: &Situation<T>, command: &CommandRef<T>) -> T {
+    /// Computes the state of the loop, with the encoder offset as last known.
+    fn loop_state(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> LoopState<T> {
+        let known = estimates.encoder_offset.valid || estimates.gap.valid;
+        if known && estimates.encoder_offset.value.is_finite() {
+            self.encoder_offset = estimates.encoder_offset.value;
+        }
+        let mut state = LoopState::new(self.tables, estimates, self.encoder_offset, command);
+        // A motor that has arrived early touches its flank now and then, but the flank carries no load.
+        state.teeth_open |= self.flank.arrived_early();
+        state
+    }
+
+    /// Updates the load model. Where a flank should carry but the teeth are open, position mode integrates the error.
+    fn update_load(&mut self, estimates: &Estimates<T>, state: &LoopState<T>, command: CommandRef<T>) {
+        let flank_missing = self.flank.stage() == Stage::Touching && state.teeth_open && state.gap_known;
+        if flank_missing && matches!(command, CommandRef::Position { .. }) {
+            self.load.integrate_error(self.tables, self.position.error_beyond_deadband(state));
+        }
+        self.load.update(self.tables, estimates, state, self.trust == T::ONE);
+    }
+
+    /// Computes the demand of the control law of the command's mode.
+    fn demand(&mut self, state: &LoopState<T>, command: CommandRef<T>) -> ControlDemand<T> {
         match command {
-            CommandRef::Position { now, .. } if situation.feels => {
-                self.inverse.follow(self.tables, situation, now, self.load.swings())
+            CommandRef::Position { now, ahead } => {
+                if state.link_seen && self.task == SlowTask::UpdateEdges {
+                    self.inverse.update_edges(self.tables, state, now);
+                }
+                self.position.demand(self.tables, &self.load, state, now, ahead)
             }
-            CommandRef::Position { now, .. } => self.plain.follow(self.tables, &self.load, situation, now),
-            CommandRef::Impedance(point) => self.plain.yield_to(situation, point),
+            CommandRef::Impedance(point) => self.impedance.demand(self.tables, &self.load, state, point),
+        }
+    }
+
+    /// Lets the monitor judge the loop. Flank changes count as hunting only while the set-point is plausible.
+    fn monitor(&mut self, state: &LoopState<T>, command: &CommandRef<T>) {
+        let input = self.monitor_input(state, command);
+        let set_point_plausible = input.has_error || matches!(command, CommandRef::Impedance(_));
+        let acting = (self.trust > T::ZERO && state.gap_known && set_point_plausible).then(|| self.flank.flank());
+        self.monitor.step(self.tables, state, &input, acting);
+    }
+
+    /// Tells load model, plain control and inverse the torque that the limit has left of the wanted torque [N m].
+    fn apply_torque(&mut self, state: &LoopState<T>, command: CommandRef<T>, torque: T, wanted: T, plain_acts: bool) {
+        let cut = torque - wanted;
+        self.load.record_saturation(self.tables, torque != wanted);
+        self.plain.update(self.tables, state, cut);
+        let inverse_acts = plain_acts && state.link_seen && matches!(command, CommandRef::Position { .. });
+        self.inverse.update_integral(self.tables, state, inverse_acts.then_some(cut));
+        if self.task == SlowTask::EstimateDemand {
+            self.inverse.estimate(self.tables, torque);
+        }
+        self.task = self.task.following();
+    }
+
+    /// Torque of plain control [N m].
+    fn plain_torque(&mut self, state: &LoopState<T>, command: &CommandRef<T>) -> T {
+        match command {
+            CommandRef::Position { now, .. } if state.link_seen => {
+                self.inverse.torque(self.tables, state, now, self.load.payload_swings())
+            }
+            CommandRef::Position { now, .. } => self.plain.torque(self.tables, &self.load, state, now),
+            CommandRef::Impedance(point) => self.plain.impedance_torque(state, point),
         }
     }
 
     /// Returns the quantities of a period that the monitor judges.
-    fn watched(&self, situation: &Situation<T>, command: &CommandRef<T>) -> Watched<T> {
+    fn monitor_input(&self, state: &LoopState<T>, command: &CommandRef<T>) -> MonitorInput<T> {
         let (tables, load) = (self.tables, &self.load);
         match command {
             CommandRef::Position { now, .. } => {
-                let planned = tables.body.load_inertia * now.acceleration + load.planned_drag(tables, now.speed);
+                let planned = tables.body.load_inertia * now.acceleration + load.planned_friction(tables, now.speed);
                 let most = tables.limits.braking * tables.limits.motor;
                 let whole = planned + tables.body.motor_inertia * now.acceleration;
-                let is_asked_too_much = (whole + load.even()).abs() > most;
-                Watched {
+                let exceeds_motor = (whole + load.gravity_torque()).abs() > most;
+                MonitorInput {
                     planned,
-                    load: load.even(),
+                    load: load.gravity_torque(),
                     // The error is not judged while the motion needs more torque than the motor has, nor above 1 rad:
                     // then set-point or reading is implausible. A loop that runs away is detected long before.
-                    has_error: situation.feels && !is_asked_too_much && situation.error.abs() < T::ONE,
-                    is_thrown: load.throws(tables),
+                    has_error: state.link_seen
+                        && !exceeds_motor
+                        && state.error.abs() < EstimateBounds::<T>::VALUES.implausible_error,
+                    external_impact: load.external_impact(tables),
                 }
             }
             // In impedance mode the commanded torque, spring included, is the demand: it explains the flank that it
             // presses.
-            CommandRef::Impedance(point) => Watched {
-                planned: point.torque + point.stiffness * situation.error,
+            CommandRef::Impedance(point) => MonitorInput {
+                planned: point.torque + point.stiffness * state.error,
                 load: T::ZERO,
                 has_error: false,
-                is_thrown: false,
+                external_impact: false,
             },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use parameters::ContactState;
+
+    use super::*;
+    use crate::compensation::set_point::Motion;
+    use crate::compensation::test_bench::tables;
+    use crate::observer::Source;
+
+    /// Estimates of a joint that touches its drive flank.
+    fn estimates() -> Estimates<f64> {
+        let mut estimates = Estimates { source: Source::Both, contact_valid: true, ..Estimates::default() };
+        estimates.reported_contact = ContactState::DriveSide;
+        (estimates.gap.valid, estimates.half_backlash.valid) = (true, true);
+        (estimates.half_backlash.value, estimates.compliance.value) = (2e-3, 1e-3);
+        // The gap coordinate is a deflection of both meshes, twice the travel of the link.
+        (estimates.gap.value, estimates.motor_lead) = (4e-3, 2e-3);
+        estimates
+    }
+
+    fn command(acceleration: f64) -> Command<f64> {
+        Command::Position { now: Motion { acceleration, ..Motion::default() }, ahead: None }
+    }
+
+    #[test]
+    fn unknown_motor_gives_no_torque() {
+        let tables = tables();
+        let output = Compensation::new(&tables).step(&Estimates::default(), &command(1.0));
+        assert_eq!((output.torque, output.stage, output.flank), (0.0, Stage::Off, None));
+    }
+
+    #[test]
+    fn trust_grows_to_one_and_falls_with_the_gap() {
+        let tables = tables();
+        let mut compensation = Compensation::new(&tables);
+        let first = compensation.step(&estimates(), &command(0.0));
+        assert_eq!((first.trust, first.stage), (0.1, Stage::Touching));
+        let last = (0..12).fold(first, |_, _| compensation.step(&estimates(), &command(0.0)));
+        assert_eq!(last.trust, 1.0);
+        let mut blind = estimates();
+        blind.gap.valid = false;
+        assert!((compensation.step(&blind, &command(0.0)).trust - 0.9).abs() < 1e-12);
+    }
+
+    #[test]
+    fn torque_is_cut_at_the_motor_limit() {
+        let tables = tables();
+        let output = Compensation::new(&tables).step(&estimates(), &command(100.0));
+        assert_eq!(output.torque, 10.0 * (1.0 / 6.0));
+        assert!(output.short_of_torque);
+    }
+
+    #[test]
+    fn set_point_that_is_not_finite_gives_no_torque() {
+        let tables = tables();
+        for acceleration in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let output = Compensation::new(&tables).step(&estimates(), &command(acceleration));
+            assert!(output.torque.is_finite() && output.demand == 0.0, "{acceleration}: {}", output.torque);
         }
     }
 }

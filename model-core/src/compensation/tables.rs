@@ -9,7 +9,7 @@ use crate::numbers::Real;
 #[repr(C)]
 pub struct CompensationTables<T: Real> {
     /// Control clock.
-    pub clock: ClockTable<T>,
+    pub clock: ControlClockTable<T>,
     /// Conversions from motor to link, and from lengths along the line of action to angles.
     pub gear: GearTable<T>,
     /// Inertias and compliance of the joint.
@@ -27,15 +27,15 @@ pub struct CompensationTables<T: Real> {
     /// Hunting and dead band of a joint at rest.
     pub rest: RestTable<T>,
     /// Load model (K6).
-    pub load: LoadTable<T>,
+    pub load: LoadModelTable<T>,
     /// Monitor of the compensated loop.
-    pub watch: WatchTable<T>,
+    pub watch: MonitorTable<T>,
 }
 
 /// Control clock.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct ClockTable<T: Real> {
+pub struct ControlClockTable<T: Real> {
     /// Control periods per second [Hz].
     pub rate: T,
     /// Control period [s].
@@ -180,7 +180,7 @@ pub struct LandingTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct SwitchingTable<T: Real> {
-    /// Demand beyond which a change of its sign counts [N m].
+    /// DemandEstimator beyond which a change of its sign counts [N m].
     pub planned: T,
     /// Uncertainty of a measured torque, M in (K13): unit of the switching hysteresis [N m].
     pub measured: T,
@@ -215,7 +215,7 @@ pub struct RestTable<T: Real> {
 /// Monitor of the compensated loop.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct WatchTable<T: Real> {
+pub struct MonitorTable<T: Real> {
     /// Gain per period of the two smoothing stages that yield the slow load [-].
     pub smoothing: T,
     /// Smallest demand that explains a flank [N m].
@@ -243,12 +243,12 @@ pub struct WatchTable<T: Real> {
 /// Load model (K6).
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct LoadTable<T: Real> {
-    /// Growth of the variances of even load and friction per period, variance of a measurement [-].
+pub struct LoadModelTable<T: Real> {
+    /// Growth of the variances of gravity torque and friction per period, variance of a measurement [-].
     pub variances: [T; 3],
-    /// Steady gain of the even load [-].
+    /// Steady gain of the gravity torque [-].
     pub gain: T,
-    /// Gain from a correction of the even load to its rate [1/s].
+    /// Gain from a correction of the gravity torque to its rate [1/s].
     pub rate_gain: T,
     /// Share of the load's rate that is left after one period in which no flank carries [-].
     pub rate_left: T,

@@ -183,3 +183,32 @@ impl Events {
         transitions(stage).iter().find(|line| self.0 & line.when as u8 != 0).map(|line| line.action)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_matching_row_fires() {
+        let events = Events::UNDERWAY.with(Event::FlankOpening, true).with(Event::FlankLost, true);
+        assert_eq!(events.action(Stage::Touching), Some(Action::CrossBack));
+        assert_eq!(events.with(Event::DemandTurned, true).action(Stage::Touching), Some(Action::CrossOver));
+    }
+
+    #[test]
+    fn event_without_a_row_keeps_the_stage() {
+        assert_eq!(Events::UNDERWAY.action(Stage::Touching), None);
+        assert_eq!(Events::UNDERWAY.with(Event::PathEnded, true).action(Stage::Landing), None);
+    }
+
+    #[test]
+    fn event_that_is_absent_does_not_fire() {
+        assert_eq!(Events::UNDERWAY.with(Event::FlankMet, false).action(Stage::Landing), None);
+    }
+
+    #[test]
+    fn stage_without_a_flank_has_no_action() {
+        let all = Events(u8::MAX);
+        assert_eq!([Stage::Plain, Stage::Off, Stage::Reversed].map(|stage| all.action(stage)), [None; 3]);
+    }
+}

@@ -2,7 +2,7 @@
 //! compensated torque. The width probe can replace the compensation.
 
 use crate::compensation::CompensationTables;
-use crate::compensation::{Command, Compensation, Shaped};
+use crate::compensation::{Command, Compensation, ControlOutput};
 use crate::controller::ControllerDesign;
 use crate::numbers::Real;
 use crate::numbers::digest::chain;
@@ -16,7 +16,7 @@ pub struct Answer<T: Real = f32> {
     /// Outputs of the observer.
     pub estimates: Estimates<T>,
     /// Outputs of the compensation.
-    pub shaped: Shaped<T>,
+    pub shaped: ControlOutput<T>,
     /// Progress of the width probe, in a period of the probe.
     pub probed: Option<ProbeProgress<T>>,
 }
@@ -144,6 +144,6 @@ impl<'tables, T: Real> Controller<'tables, T> {
             return Answer { probed: Some(ProbeProgress::Running), ..still };
         }
         let (torque, progress) = probe.step(&estimates);
-        Answer { shaped: Shaped { torque, ..Shaped::default() }, probed: Some(progress), ..still }
+        Answer { shaped: ControlOutput { torque, ..ControlOutput::default() }, probed: Some(progress), ..still }
     }
 }

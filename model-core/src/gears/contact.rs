@@ -107,7 +107,7 @@ impl<T: Real> Law<T> {
     /// Finds the law at a deflection and speed: sharp dead zone (eq. 12) with the joint's damping law. The unit of time of
     /// `speed` is a sub-step.
     #[inline]
-    pub fn of<const N: usize>(
+    pub fn at_deflection<const N: usize>(
         tables: &Tables<T, N>,
         (kind, planet): (usize, usize),
         deflection: T,
@@ -150,7 +150,7 @@ impl<T: Real, const N: usize> NetForces<T, N> {
 
     /// Sums the forces of all meshes.
     #[inline(always)]
-    pub fn of<M>(meshes: &PerMesh<M, N>, force: impl Fn(&M) -> T) -> Self {
+    pub fn sum_over<M>(meshes: &PerMesh<M, N>, force: impl Fn(&M) -> T) -> Self {
         let mut net = Self::NONE;
         for i in 0..N {
             net.add(i, force(&meshes[0][i]), force(&meshes[1][i]));
@@ -247,7 +247,7 @@ pub fn acceleration<T: Real, const N: usize>(
     mesh_forces: &PerMesh<T, N>,
     wind_up_force: T,
 ) -> Relative<T, N> {
-    NetForces::of(mesh_forces, |force| *force).accelerations(&tables.mobility, applied, wind_up_force)
+    NetForces::sum_over(mesh_forces, |force| *force).accelerations(&tables.mobility, applied, wind_up_force)
 }
 
 /// Returns the force between carrier and link.

@@ -90,7 +90,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> StepEnd<'_, T, N, OVERTONE
         let was = laws[kind][i];
         let MeshState { overlap: deflection, speed, stiffness, error, .. } =
             self.fixed.mesh(&Law::OPEN, (kind, i), self.harmonics_now, at);
-        let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
+        let is = Law::at_deflection(tables, (kind, i), deflection, speed, stiffness);
         laws[kind][i] = is;
         // Without backlash both flanks have the same law.
         if was.closed == is.closed && was.offset == is.offset {

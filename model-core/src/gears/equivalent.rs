@@ -17,14 +17,14 @@ const RATE: usize = 4;
 
 /// Distance between motor and link, or overlap on a flank, and the rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point<T> {
+pub struct GapMotion<T> {
     /// Motor minus link on the line of action, or overlap.
     pub position: T,
     /// Rate of `position`.
     pub rate: T,
 }
 
-impl<T: Real> Point<T> {
+impl<T: Real> GapMotion<T> {
     fn plus(self, change: Self) -> Self {
         Self { position: self.position + change.position, rate: self.rate + change.rate }
     }
@@ -45,12 +45,12 @@ struct Flank<T> {
 
 /// Returns gap and rate after one tick; `acceleration` is the acceleration of the gap by the torques.
 #[inline]
-pub fn tick<T: Real, const N: usize>(tables: &Tables<T, N>, acceleration: T, start: Point<T>) -> Point<T> {
+pub fn tick<T: Real, const N: usize>(tables: &Tables<T, N>, acceleration: T, start: GapMotion<T>) -> GapMotion<T> {
     let half = tables.meshes[0].first().map_or(T::ZERO, |mesh| T::TWO * mesh.half_backlash);
     let side = if start.position < T::ZERO { -T::ONE } else { T::ONE };
     let pull = side * acceleration;
     let flank = Flank { damping: tables.springs[0].damping, pull };
-    let overlap = Point { position: side * start.position - half, rate: side * start.rate };
+    let overlap = GapMotion { position: side * start.position - half, rate: side * start.rate };
     let moved = if flank.is_pressed(overlap) {
         flank.pressed(tables, overlap, T::TWO * half)
     } else {
@@ -59,35 +59,35 @@ pub fn tick<T: Real, const N: usize>(tables: &Tables<T, N>, acceleration: T, sta
         let moved = flank.free(overlap, whole);
         flank.meeting(overlap, moved, whole, gap)
     };
-    Point { position: start.position + side * moved.position, rate: start.rate + side * moved.rate }
+    GapMotion { position: start.position + side * moved.position, rate: start.rate + side * moved.rate }
 }
 
 impl<T: Real> Flank<T> {
     /// Returns the contact force without the condition that the contact never pulls.
     #[inline(always)]
-    fn line(&self, at: Point<T>) -> T {
+    fn line(&self, at: GapMotion<T>) -> T {
         at.position + self.damping * at.rate
     }
 
     #[inline(always)]
-    fn is_pressed(&self, at: Point<T>) -> bool {
+    fn is_pressed(&self, at: GapMotion<T>) -> bool {
         at.position > T::ZERO && self.line(at) > T::ZERO
     }
 
     /// Returns the changes of position and rate in free flight.
     #[inline(always)]
-    fn free(&self, at: Point<T>, time: T) -> Point<T> {
+    fn free(&self, at: GapMotion<T>, time: T) -> GapMotion<T> {
         let gained = self.pull * time;
-        Point { position: time * (at.rate + T::HALF * gained), rate: gained }
+        GapMotion { position: time * (at.rate + T::HALF * gained), rate: gained }
     }
 
     /// Returns the changes over a tick that begins in contact; `gap` is the distance to the opposite flank.
     #[inline(always)]
-    fn pressed<const N: usize>(&self, tables: &Tables<T, N>, at: Point<T>, gap: T) -> Point<T> {
+    fn pressed<const N: usize>(&self, tables: &Tables<T, N>, at: GapMotion<T>, gap: T) -> GapMotion<T> {
         let flow = &tables.flow.whole.in_phase.0;
         let beyond = at.position - self.pull;
         let over = |row| flow[(row, GAP)] * beyond + flow[(row, RATE)] * at.rate;
-        let moved = Point { position: over(GAP), rate: over(RATE) };
+        let moved = GapMotion { position: over(GAP), rate: over(RATE) };
         let (line, change) = (self.line(at), self.line(moved));
         if line + change >= T::ZERO {
             return moved;
@@ -105,16 +105,16 @@ impl<T: Real> Flank<T> {
     /// Returns the changes over the time `left` in free flight, and in contact once a flank is met. `moved` is the change
     /// without contact.
     #[inline(always)]
-    fn meeting(&self, at: Point<T>, moved: Point<T>, left: T, gap: T) -> Point<T> {
+    fn meeting(&self, at: GapMotion<T>, moved: GapMotion<T>, left: T, gap: T) -> GapMotion<T> {
         let end = at.plus(moved);
         if self.is_pressed(end) {
             return self.landing(at, end, moved, left);
         }
         let (other, beyond) = (Self { pull: -self.pull, ..*self }, end.mirrored(gap));
         if other.is_pressed(beyond) {
-            let moved = Point { position: -moved.position, rate: -moved.rate };
+            let moved = GapMotion { position: -moved.position, rate: -moved.rate };
             let landed = other.landing(at.mirrored(gap), beyond, moved, left);
-            return Point { position: -landed.position, rate: -landed.rate };
+            return GapMotion { position: -landed.position, rate: -landed.rate };
         }
         moved
     }
@@ -122,7 +122,7 @@ impl<T: Real> Flank<T> {
     /// Returns the changes in free flight up to this flank and in contact afterwards. Without contact the motion would change
     /// by `moved` to `end`. Contact begins where the overlap becomes positive; if it already is, where the force does.
     #[inline(always)]
-    fn landing(&self, at: Point<T>, end: Point<T>, moved: Point<T>, left: T) -> Point<T> {
+    fn landing(&self, at: GapMotion<T>, end: GapMotion<T>, moved: GapMotion<T>, left: T) -> GapMotion<T> {
         let curve = T::HALF * moved.rate * left;
         let share = if at.position < T::ZERO {
             first_rise(at.position, moved.position, curve)
@@ -139,14 +139,14 @@ impl<T: Real> Flank<T> {
     /// is t A over 1 - A t / 2 + (A t)^2 / 12, with an error of fifth order (Pade approximation [2/2]). A^2 = -1 - c A reduces
     /// the quotient to two products. The divisor exceeds 1/2 for every part of a tick that the design allows.
     #[inline(always)]
-    fn held(&self, at: Point<T>, time: T) -> Point<T> {
+    fn held(&self, at: GapMotion<T>, time: T) -> GapMotion<T> {
         let beyond = at.position - self.pull;
         let twelfth = T::HALF * T::SIXTH * time;
         let along = T::ONE - twelfth * time;
         let across = T::HALF * time + self.damping * twelfth * time;
         let scale = time / (along * (along + self.damping * across) + across * across);
         let braking = beyond + self.damping * at.rate;
-        Point {
+        GapMotion {
             position: scale * (along * at.rate - across * beyond),
             rate: -(scale * (along * braking + across * at.rate)),
         }

@@ -79,7 +79,7 @@ impl<T: Real> MeshPhase<T> {
 
     /// Returns the phasor of the advance over a fraction of the tick.
     #[inline]
-    pub fn over(&self, part: T) -> Phasor<T> {
+    pub fn phasor_over(&self, part: T) -> Phasor<T> {
         Phasor::at((self.advance * part).to_phase())
     }
 }

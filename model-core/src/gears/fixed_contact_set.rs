@@ -50,7 +50,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
             let sun = state.planets[i].point();
             for (kind, at) in [(0, sun), (1, state.gap.point().minus(sun))] {
                 let mesh = self.mesh(&Law::OPEN, (kind, i), harmonics_now, at);
-                laws[kind][i] = Law::of(self.tables, (kind, i), mesh.overlap, mesh.speed, mesh.stiffness);
+                laws[kind][i] = Law::at_deflection(self.tables, (kind, i), mesh.overlap, mesh.speed, mesh.stiffness);
             }
         }
     }

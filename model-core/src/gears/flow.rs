@@ -10,7 +10,7 @@ use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::planets::each_planet;
 use crate::gears::stages::{Point, SubstepState};
 use crate::gears::state::{MotionInPlace, Relative};
-use crate::gears::tables::{Block, Inputs, Transition};
+use crate::gears::tables::{Block, Inputs, TransitionTable};
 use crate::numbers::Real;
 
 /// Pseudo-force at the start of a tick, k_mean x + c x' - F (S6): linear mesh force of the flow minus true mesh force.
@@ -59,8 +59,8 @@ pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
         rate.add(i, sun.1, ring.1);
     });
     (least_room > T::ZERO).then(|| Start {
-        value: PseudoForce::of(tables.planet_share, &value),
-        rate: PseudoForce::of(tables.planet_share, &rate),
+        value: PseudoForce::from_net_forces(tables.planet_share, &value),
+        rate: PseudoForce::from_net_forces(tables.planet_share, &rate),
     })
 }
 
@@ -78,7 +78,7 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     let tables = fixed.tables;
     let flow = &tables.flow;
     let Start { value, rate } = start;
-    let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
+    let modes = Modes::<T, N, K>::from_motion(tables.planet_share, motion);
     let torques = [applied.sun, applied.carrier, applied.link];
     let node = |part: T| PhaseHarmonics::new(phase.at(part), phase.rate, tables.excitation.harmonics);
 
@@ -128,7 +128,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
             let sun = positions.planets[i];
             net.add(i, mesh((0, i), sun), mesh((1, i), positions.gap - sun));
         }
-        (PseudoForce::of(tables.planet_share, &net), violation)
+        (PseudoForce::from_net_forces(tables.planet_share, &net), violation)
     }
 }
 
@@ -142,7 +142,7 @@ struct PseudoForce<T, const N: usize> {
 
 impl<T: Real, const N: usize> PseudoForce<T, N> {
     #[inline(always)]
-    fn of(share: T, net: &NetForces<T, N>) -> Self {
+    fn from_net_forces(share: T, net: &NetForces<T, N>) -> Self {
         let mean = share * net.difference();
         let mut deviations = [T::ZERO; N];
         each_planet!(N, i => {
@@ -173,7 +173,7 @@ struct Modes<T, const N: usize, const K: usize> {
 
 impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     #[inline]
-    fn of(share: T, motion: &MotionInPlace<T, N>) -> Self {
+    fn from_motion(share: T, motion: &MotionInPlace<T, N>) -> Self {
         let means = [&*motion.position, &*motion.rate].map(|part| share * total(&part.planets));
         let part = |half: usize, part: &Relative<T, N>| {
             let all = [means[half], part.gap, part.wind_up];
@@ -188,7 +188,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 
     /// Returns one in-phase coordinate after the linear flow under constant torques.
     #[inline(always)]
-    fn coordinate(&self, transition: &Transition<T>, torques: &[T; 3], half: usize, k: usize) -> T {
+    fn coordinate(&self, transition: &TransitionTable<T>, torques: &[T; 3], half: usize, k: usize) -> T {
         let row = 3 * half + k;
         let mut change = T::ZERO;
         for from in 0..2 {
@@ -205,7 +205,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 
     /// Returns one deviation after the linear flow.
     #[inline(always)]
-    fn deviation(&self, transition: &Transition<T>, i: usize, half: usize) -> T {
+    fn deviation(&self, transition: &TransitionTable<T>, i: usize, half: usize) -> T {
         let [position, rate] = self.deviations[i];
         self.deviations[i][half]
             + (entry(&transition.deviation, half, 0) * position + entry(&transition.deviation, half, 1) * rate)
@@ -213,7 +213,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 
     /// Returns the positions of mean planet, gap and deviations after the linear flow.
     #[inline]
-    fn positions(&self, transition: &Transition<T>, torques: &[T; 3]) -> ModalPositions<T, N> {
+    fn positions(&self, transition: &TransitionTable<T>, torques: &[T; 3]) -> ModalPositions<T, N> {
         let in_phase = [self.coordinate(transition, torques, 0, 0), self.coordinate(transition, torques, 0, 1)];
         let mut deviations = [T::ZERO; N];
         each_planet!(N, i => {
@@ -224,7 +224,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 
     /// Returns all positions and rates after the linear flow.
     #[inline]
-    fn flow(&self, transition: &Transition<T>, torques: &[T; 3]) -> Self {
+    fn flow(&self, transition: &TransitionTable<T>, torques: &[T; 3]) -> Self {
         let (mut in_phase, mut deviations) = ([[T::ZERO; K]; 2], [[T::ZERO; 2]; N]);
         for half in 0..2 {
             for k in 0..K {

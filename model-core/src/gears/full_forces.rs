@@ -18,7 +18,7 @@ pub fn runge_kutta<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_substep_share);
+    let half = phase.phasor_over(tables.half_substep_share);
     let (mut motion, mut phasor) = (*motion, Phasor::at(phase.start));
     let mut start = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
@@ -44,7 +44,7 @@ pub fn semi_implicit_euler<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_substep_share);
+    let half = phase.phasor_over(tables.half_substep_share);
     let (mut motion, mut phasor) = (*motion, Phasor::at(phase.start));
     let mut now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
@@ -90,7 +90,7 @@ pub fn forces<T: Real, const N: usize>(
             } else {
                 // The unit of time of a law is a sub-step.
                 let speed = tables.substep * speed;
-                let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
+                let law = Law::at_deflection(tables, (kind, i), deflection, speed, stiffness);
                 law.closed * stiffness * (deflection - law.offset) + law.damping * speed
             };
         }

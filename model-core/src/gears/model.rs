@@ -4,7 +4,7 @@
 use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, contact, mesh_coordinates};
-use crate::gears::equivalent::{self, Point};
+use crate::gears::equivalent::{self, GapMotion};
 use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations, mesh_phase_advance};
 #[cfg(feature = "design")]
 use crate::gears::paper;
@@ -124,7 +124,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         // `N` is known at compile time: the image of an equivalent gear contains no code below this block.
         if N == EQUIVALENT {
             self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
-            let start = Point { position: self.state.position.gap, rate: self.state.rate.gap };
+            let start = GapMotion { position: self.state.position.gap, rate: self.state.rate.gap };
             let acceleration = applied.sun - T::TWO * applied.carrier;
             self.state.set_gap(equivalent::tick(tables, acceleration, start));
             return;

@@ -11,7 +11,7 @@ use crate::gears::contact::{AppliedAcceleration, mesh_coordinates};
 use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations};
 use crate::gears::full_forces::forces;
 use crate::gears::state::{Motion, Relative};
-use crate::gears::tables::{Inputs, Tables, Transition};
+use crate::gears::tables::{Inputs, Tables, TransitionTable};
 use crate::numbers::Real;
 
 /// Returns the motion after one tick.
@@ -22,7 +22,7 @@ pub fn step<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_substep_share);
+    let half = phase.phasor_over(tables.half_substep_share);
     let (mut motion, mut phasor) = (*motion, Phasor::at(phase.start));
     let mut now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
@@ -36,7 +36,7 @@ pub fn step<T: Real, const N: usize>(
             }
         }
         let force = PseudoForce::new(tables.planet_share, &force);
-        let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, applied);
+        let free = Modes::from_motion(tables.planet_share, &motion).free(&tables.flow.whole, applied);
         motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
         phasor = phasor.turned(&half).turned(&half);
         now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
@@ -74,7 +74,7 @@ struct Modes<T: Real, const N: usize> {
 
 impl<T: Real, const N: usize> Modes<T, N> {
     #[inline]
-    fn of(share: T, motion: &Motion<T, N>) -> Self {
+    fn from_motion(share: T, motion: &Motion<T, N>) -> Self {
         let Motion { position, rate } = motion;
         let mean = share * total(&position.planets);
         let mean_rate = share * total(&rate.planets);
@@ -86,7 +86,7 @@ impl<T: Real, const N: usize> Modes<T, N> {
 
     /// Returns the motion after the linear flow under constant torques.
     #[inline]
-    fn free(&self, transition: &Transition<T>, applied: &AppliedAcceleration<T>) -> Self {
+    fn free(&self, transition: &TransitionTable<T>, applied: &AppliedAcceleration<T>) -> Self {
         let torques = SVector::from([applied.sun, applied.carrier, applied.link]);
         Self {
             in_phase: self.in_phase + (&transition.in_phase.0 * &self.in_phase + &transition.torques.0 * &torques),

@@ -6,7 +6,7 @@
 
 use core::array;
 
-use crate::gears::equivalent::Point;
+use crate::gears::equivalent::GapMotion;
 use crate::gears::excitation::{PhaseHarmonics, Phasor, mesh_phase_advance};
 use crate::gears::tables::{Rigid, Tables};
 use crate::numbers::Real;
@@ -168,7 +168,7 @@ impl<T: Real, const N: usize> State<T, N> {
 
     /// Sets the gap of an equivalent gear, in canonical form; the massless planet moves by half the gap.
     #[inline]
-    pub(super) fn set_gap(&mut self, gap: Point<T>) {
+    pub(super) fn set_gap(&mut self, gap: GapMotion<T>) {
         let (position, rate) = (gap.position.canonical(), gap.rate.canonical());
         (self.position.gap, self.rate.gap) = (position, rate);
         (self.position.planets, self.rate.planets) = ([T::HALF * position; N], [T::HALF * rate; N]);

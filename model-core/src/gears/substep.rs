@@ -19,7 +19,7 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
 ) {
     let tables = fixed.tables;
     let compliant = tables.mobility.wind_up > T::ZERO;
-    let half = phase.over(tables.half_substep_share);
+    let half = phase.phasor_over(tables.half_substep_share);
     let rate = tables.substep * phase.rate;
     let mut phasor = Phasor::at(phase.start);
     let mut violations: PerMesh<T, N> = [[T::ZERO; N]; 2];

@@ -32,7 +32,7 @@ pub struct Tables<T: Real, const N: usize> {
     /// Sharpness of the tanh dead zone (eq. 13); zero selects the sharp dead zone (eq. 12).
     pub sharpness: T,
     /// Factors between SI and dimensionless quantities.
-    pub units: Units<T>,
+    pub units: UnitTable<T>,
     /// Gains of the rigid body.
     pub rigid: Rigid<T>,
     /// Acceleration of each body under a unit force.
@@ -44,9 +44,9 @@ pub struct Tables<T: Real, const N: usize> {
     /// Parameters of each mesh: sun-planet of every planet, then ring-planet.
     pub meshes: [[MeshTable<T>; N]; 2],
     /// Joint in units in which a sub-step lasts 1.
-    pub stage: Stage<T>,
+    pub stage: StageTable<T>,
     /// Exponential flow of the joint with all meshes closed, over one tick (one sub-step for `Scheme::PaperEtd1`).
-    pub flow: Flow<T>,
+    pub flow: FlowTable<T>,
     /// Verlet sub-steps for light planets.
     pub verlet: VerletTable<T>,
 }
@@ -87,7 +87,7 @@ pub struct VerletTable<T: Real> {
 /// become whole numbers, and a weight of 1 costs no instruction.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct Stage<T: Real> {
+pub struct StageTable<T: Real> {
     /// Sub-steps per unit of dimensionless time, 1/h.
     pub rate: T,
     /// h^2 / 6: converts a dimensionless acceleration to stage units.
@@ -119,7 +119,7 @@ pub enum Scheme {
 /// Factors between SI and dimensionless quantities.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct Units<T: Real> {
+pub struct UnitTable<T: Real> {
     /// Dimensionless acceleration of the sun per N m of drive torque.
     pub drive: T,
     /// Dimensionless deceleration of the carrier per N m of load torque (without compliance).
@@ -211,13 +211,13 @@ pub struct MeshTable<T: Real> {
 /// stored minus the identity, which saves a digit in f32.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct Flow<T: Real> {
+pub struct FlowTable<T: Real> {
     /// Transition over the whole step.
-    pub whole: Transition<T>,
+    pub whole: TransitionTable<T>,
     /// Transition up to the first node within the step.
-    pub early: Transition<T>,
+    pub early: TransitionTable<T>,
     /// Transition up to the second node.
-    pub late: Transition<T>,
+    pub late: TransitionTable<T>,
     /// Input integrals up to the first node, of a pseudo-force linear in time: its value and its rate (per sub-step) at the
     /// start.
     pub early_inputs: [Inputs<T>; 2],
@@ -228,7 +228,7 @@ pub struct Flow<T: Real> {
     /// Times of the nodes as fractions of the step.
     pub nodes: [T; 2],
     /// Transition up to the middle of the step, where light planets evaluate the pseudo-force.
-    pub half: Transition<T>,
+    pub half: TransitionTable<T>,
     /// Input integrals up to the middle, of a constant pseudo-force.
     pub half_constant: Inputs<T>,
     /// Input integrals over the whole step, of a pseudo-force linear through its values at the start and in the middle.
@@ -245,7 +245,7 @@ pub struct Flow<T: Real> {
     pub longest_advance: T,
 }
 
-impl<T: Real> Flow<T> {
+impl<T: Real> FlowTable<T> {
     /// Returns true if ticks in which contacts hold are exponential ticks.
     #[inline(always)]
     pub fn takes_whole_ticks(&self) -> bool {
@@ -256,7 +256,7 @@ impl<T: Real> Flow<T> {
 /// exp(H t) - I for in-phase motion and deviations, and the response to constant torques.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
-pub struct Transition<T: Real> {
+pub struct TransitionTable<T: Real> {
     /// In-phase motion.
     pub in_phase: Block<T, 6, 6>,
     /// Deviation of a planet from the mean planet.
@@ -366,7 +366,7 @@ impl Digest {
         }
     }
 
-    fn flow<T: Real>(&mut self, flow: &Flow<T>) {
+    fn flow<T: Real>(&mut self, flow: &FlowTable<T>) {
         for transition in [&flow.whole, &flow.early, &flow.late, &flow.half] {
             self.block(&transition.in_phase);
             self.block(&transition.deviation);

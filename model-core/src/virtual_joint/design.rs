@@ -8,7 +8,7 @@ use crate::gears::{Kinematics, Mechanics, Scales, Tables, gear_losses};
 use crate::numbers::Real;
 use crate::observer::design::{CLOCK_TICKS, NO_LIMIT};
 use crate::virtual_joint::tables::{
-    COMMANDS_IN_FLIGHT, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
+    COMMAND_QUEUE_LENGTH, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
     encoder_phase,
 };
 use parameters::{Friction, JointParameters, PlantParameters, Surroundings};
@@ -124,7 +124,7 @@ fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(
     };
     let must_be = "the tick rate: a virtual joint's tick is a control period";
     within("the control rate", of.control_rate.into(), tick_rate.into(), tick_rate.into(), must_be)?;
-    let most = COMMANDS_IN_FLIGHT as f64 - 1.0;
+    let most = COMMAND_QUEUE_LENGTH as f64 - 1.0;
     within("the control delay", of.delay, 0.0, most, "from 0 to 4 control periods")?;
     within("the efficiency", of.efficiency, 0.1, 1.0, "from 0.1 to 1")?;
     for encoder in [&of.motor_encoder, &of.output_encoder] {
@@ -156,7 +156,7 @@ mod tests {
     use crate::virtual_joint::VirtualJoint;
 
     #[test]
-    fn an_effect_that_a_virtual_joint_lacks_is_refused_by_its_key() {
+    fn unsupported_effect_is_refused_by_its_key() {
         let file = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
         let tables: Tables<f32, 3> = design(&file.parameters, 10_000).expect("tables");
         let mut around = file.surroundings;

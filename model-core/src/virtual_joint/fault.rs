@@ -7,7 +7,7 @@ use core::marker::PhantomData;
 use crate::numbers::Real;
 
 /// Units of the fault descriptions, and further faults that only some users can apply.
-pub trait Units: Copy + Debug + PartialEq {
+pub trait FaultUnits: Copy + Debug + PartialEq {
     /// Time at which a fault begins or ends.
     type Time: Copy + Debug + PartialEq;
     /// Seed of a fault's random numbers.
@@ -28,20 +28,20 @@ pub trait Units: Copy + Debug + PartialEq {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedPoint<T>(PhantomData<T>);
 
-impl<T: Real> Units for FixedPoint<T> {
+impl<T: Real> FaultUnits for FixedPoint<T> {
     type Time = u32;
     type Seed = u64;
     type Offset = i32;
     type Deviation = u32;
     type Share = u32;
     type Real = T;
-    type Other = NoOther;
+    type Other = NoOtherFault;
 }
 
 /// Empty type: no further faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum NoOther {}
+pub enum NoOtherFault {}
 
 /// Fault with its duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +54,7 @@ pub enum NoOther {}
                        FaultKind<U>: serde::Deserialize<'de>"
     ))
 )]
-pub struct Fault<U: Units> {
+pub struct Fault<U: FaultUnits> {
     /// First time at which the fault acts.
     pub start: U::Time,
     /// Time from which the fault no longer acts.
@@ -68,7 +68,7 @@ pub struct Fault<U: Units> {
 /// Shaft of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Shaft {
+pub enum EncoderShaft {
     /// Motor shaft.
     Motor,
     /// Link shaft.
@@ -78,19 +78,19 @@ pub enum Shaft {
 /// Kind of fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum FaultKind<U: Units> {
+pub enum FaultKind<U: FaultUnits> {
     /// Counts stand still.
-    Frozen(Shaft),
+    Frozen(EncoderShaft),
     /// Counts are offset.
-    Offset(Shaft, U::Offset),
+    Offset(EncoderShaft, U::Offset),
     /// Counts scatter with a standard deviation.
-    Noise(Shaft, U::Deviation),
+    Noise(EncoderShaft, U::Deviation),
     /// A share of the motion is not counted; the missing counts remain missing afterwards.
-    MissingCounts(Shaft, U::Share),
+    MissingCounts(EncoderShaft, U::Share),
     /// Error once per turn: the sine of the read angle times an amplitude.
-    Eccentric(Shaft, U::Real),
+    Eccentric(EncoderShaft, U::Real),
     /// A share of the readings is lost; the motor's last reading is repeated instead.
-    LostReadings(Shaft, U::Share),
+    LostReadings(EncoderShaft, U::Share),
     /// Torque in excess of the command: a ratio of the command, and a torque [N m].
     TorqueBias(U::Real, U::Real),
     /// Torque limit of the motor in both directions [N m].

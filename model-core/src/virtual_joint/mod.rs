@@ -4,7 +4,7 @@
 #[cfg(feature = "design")]
 pub mod design;
 pub mod fault;
-pub mod faults;
+pub mod fault_injector;
 mod plant;
 pub mod tables;
 

@@ -1,6 +1,16 @@
 //! Real-time plant: the fixed step of the gears with motor, current loop, frictions, weight and encoders, one control
 //! period at a time. Torques are constant over a period; friction can stick. There is no noise, so that equal commands
 //! give equal bits everywhere.
+//!
+//! ```text
+//! air gap   i += (u - i) rise,   torque = (u - (u - i) lacking) gain,   u = command, delayed
+//! friction  viscous w + clamp(stop w + driving - viscous w, -dry, dry)
+//!           dry = coulomb + rise/(1 + (w/w_half)^2) + loss
+//! encoder   counts(angle - lag w + once sin(angle) + twice sin(2 angle))
+//! ```
+//!
+//! Symbols: the fields of [`SurroundingsTable`], [`CurrentLoopTable`](super::tables::CurrentLoopTable),
+//! [`FrictionTable`] and [`EncoderErrorTable`]; w = speed of the shaft, 1/w_half = `per_speed`, stop = inertia/period.
 
 use crate::gears::Tables;
 use crate::gears::{Model, Outputs, Torques};
@@ -9,7 +19,7 @@ use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::{Reading, Samples};
 use crate::virtual_joint::tables::{
-    COMMANDS_IN_FLIGHT, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
+    COMMAND_QUEUE_LENGTH, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
 };
 
 /// Torques of the last period [N m].
@@ -45,7 +55,7 @@ pub struct VirtualJoint<'tables, T: Real, const N: usize> {
     model: Model<'tables, T, N>,
     table: &'tables SurroundingsTable<T>,
     /// Delayed commands, the newest first.
-    commands: [T; COMMANDS_IN_FLIGHT],
+    commands: [T; COMMAND_QUEUE_LENGTH],
     current: T,
     periods: u32,
     acting: ActingTorques<T>,
@@ -80,18 +90,18 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
             shafts: Shafts::default(),
             model,
             table,
-            commands: [T::ZERO; COMMANDS_IN_FLIGHT],
+            commands: [T::ZERO; COMMAND_QUEUE_LENGTH],
             current: T::ZERO,
             periods: 0,
             acting: ActingTorques::default(),
         };
-        joint.update();
+        joint.update_outputs();
         joint
     }
 
     /// Updates outputs and shafts after a step.
     #[inline(never)]
-    fn update(&mut self) {
+    fn update_outputs(&mut self) {
         self.outputs = self.model.outputs();
         self.shafts = self.shafts();
     }
@@ -99,11 +109,11 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     /// Returns to rest at angle zero.
     pub fn reset(&mut self) {
         self.model.reset();
-        self.commands = [T::ZERO; COMMANDS_IN_FLIGHT];
+        self.commands = [T::ZERO; COMMAND_QUEUE_LENGTH];
         self.current = T::ZERO;
         self.periods = 0;
         self.acting = ActingTorques::default();
-        self.update();
+        self.update_outputs();
     }
 
     /// Model of the gears.
@@ -145,15 +155,15 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     /// not inlined: each needs much stack, but not at the same time.
     #[inline(never)]
     pub fn advance(&mut self, command: T, disturbance: T) {
-        self.find_torques(command, disturbance);
+        self.compute_torques(command, disturbance);
         self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
         self.periods = self.periods.wrapping_add(1);
-        self.update();
+        self.update_outputs();
     }
 
     /// Computes the torques that act over the period.
     #[inline(never)]
-    fn find_torques(&mut self, command: T, disturbance: T) {
+    fn compute_torques(&mut self, command: T, disturbance: T) {
         let table = self.table;
         self.commands.rotate_right(1);
         let limit = table.current.limit;
@@ -165,33 +175,33 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let mesh_torque = self.mesh_torque();
         let [motor_speed, link_speed] = shafts.speeds;
         let loss = table.losses[usize::from(mesh_torque * motor_speed < T::ZERO)] * mesh_torque.abs();
-        let lost = friction(&table.motor_friction, motor_speed, driving - mesh_torque, loss);
+        let motor_friction = friction(&table.motor_friction, motor_speed, driving - mesh_torque, loss);
 
         let (sine, _) = sine_cosine::<T>(shafts.link as u32);
         let braking = table.weight * sine + disturbance;
         let [from_sun, from_wind_up, from_rate] = table.to_link;
         let to_link =
             from_sun * mesh_torque + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
-        let rubbing = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
-        self.acting = ActingTorques { air_gap, drive: driving - lost, load: braking + rubbing };
+        let load_friction = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
+        self.acting = ActingTorques { air_gap, drive: driving - motor_friction, load: braking + load_friction };
     }
 
     /// Mean torque in the air gap over this period.
     fn air_gap(&mut self) -> T {
         let table = &self.table.current;
-        let wanted = self.commands.get(table.delay as usize).copied().unwrap_or(T::ZERO);
-        let missing = wanted - self.current;
-        self.current += missing * table.rise;
-        (wanted - missing * table.lacking) * table.gain
+        let delayed_command = self.commands.get(table.delay as usize).copied().unwrap_or(T::ZERO);
+        let command_step = delayed_command - self.current;
+        self.current += command_step * table.rise;
+        (delayed_command - command_step * table.lacking) * table.gain
     }
 
     /// Torque from the sun to the planets, by mesh stiffness alone.
     fn mesh_torque(&self) -> T {
         let table = self.table;
         let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
-        let overlap =
+        let penetration =
             meshes.fold(T::ZERO, |sum, (deflection, half)| sum + *deflection - clamp(*deflection, -*half, *half));
-        table.sun_torque * overlap
+        table.sun_torque * penetration
     }
 
     fn shafts(&self) -> Shafts<T> {
@@ -244,4 +254,38 @@ fn friction<T: Real>(table: &FrictionTable<T>, speed: T, driving: T, extra: T) -
     let dry = table.coulomb + table.rise / (T::ONE + part * part) + extra;
     let viscous = table.viscous * speed;
     viscous + clamp(table.stop * speed + driving - viscous, -dry, dry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: FrictionTable<f64> =
+        FrictionTable { coulomb: 2.0, viscous: 0.5, rise: 1.0, per_speed: 10.0, stop: 1000.0 };
+
+    #[test]
+    fn shaft_at_rest_sticks_up_to_its_friction_at_rest() {
+        assert_eq!([2.9, -2.9, 3.1].map(|driving| friction(&TABLE, 0.0, driving, 0.0)), [2.9, -2.9, 3.0]);
+    }
+
+    #[test]
+    fn sliding_shaft_is_braked_against_its_motion() {
+        let [forward, back] = [1.0, -1.0].map(|speed| friction(&TABLE, speed, 0.0, 0.0));
+        assert!(forward == -back && (forward - (0.5 + 2.0 + 1.0 / 101.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn half_of_the_rise_is_left_at_its_speed() {
+        assert!((friction(&TABLE, 0.1, 0.0, 0.0) - (0.05 + 2.0 + 0.5)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn losses_of_the_gears_add_to_the_dry_friction() {
+        assert_eq!(friction(&TABLE, 0.0, 9.0, 4.0), 7.0);
+    }
+
+    #[test]
+    fn slow_shaft_is_stopped_within_the_period() {
+        assert_eq!(friction(&FrictionTable { viscous: 0.0, ..TABLE }, 1e-3, 0.0, 0.0), 1.0);
+    }
 }

@@ -6,7 +6,7 @@ use crate::numbers::Real;
 use crate::observer::tables::MOST_DELAY;
 
 /// Capacity for delayed motor commands.
-pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
+pub const COMMAND_QUEUE_LENGTH: usize = MOST_DELAY + 1;
 
 /// Tables of a virtual joint with `N` planets.
 #[cfg_attr(feature = "design", doc = "[`VirtualJointDesign::new`] designs them.")]
@@ -66,7 +66,7 @@ pub struct SurroundingsTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CurrentLoopTable<T: Real> {
-    /// Whole periods of delay, less than [`COMMANDS_IN_FLIGHT`].
+    /// Whole periods of delay, less than [`COMMAND_QUEUE_LENGTH`].
     pub delay: u32,
     /// Share of the missing torque that is added in a period.
     pub rise: T,
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_of_any_number_in_a_turn_survive_the_way_to_an_angle_and_back() {
+    fn counts_survive_the_way_to_an_angle_and_back() {
         for turn in [24, 1000, 4000, 7200, 12_345, 20_000, 1_000_003, 10_000_000, (1 << 24) - 1] {
             let encoder = encoder(turn);
             for counts in (0..turn).step_by(turn as usize / 1000 + 1).chain([1, turn / 2, turn - 2, turn - 1]) {
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_of_a_power_of_two_are_the_upper_bits_of_the_angle() {
+    fn counts_of_a_power_of_two_are_the_upper_bits() {
         for bits in 6..=24 {
             let encoder = encoder(1 << bits);
             for angle in (0..u32::MAX).step_by(999_983) {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::virtual_joint::fault::{EncoderShaft, FaultKind};
 
 use crate::file::{Fault, Offset, fault_is_active, fault_stream};
 use crate::random::RandomStream;
@@ -40,7 +40,7 @@ impl ActiveFault {
     }
 
     /// Reading of an encoder under the fault.
-    pub fn count(&mut self, time: f64, encoder: Shaft, counts: i64, counts_per_turn: f64) -> i64 {
+    pub fn count(&mut self, time: f64, encoder: EncoderShaft, counts: i64, counts_per_turn: f64) -> i64 {
         let on = fault_is_active(&self.fault, time);
         match self.fault.kind {
             FaultKind::Frozen(of) if of == encoder => match (on, self.frozen_counts) {

@@ -7,7 +7,7 @@ mod teeth;
 
 use std::collections::VecDeque;
 
-use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::virtual_joint::fault::{EncoderShaft, FaultKind};
 use parameters::JointParameters;
 use reference::closed_loop::SetPoint;
 use reference::drive_train::{DriveTrainParameters, Measurement};
@@ -105,7 +105,7 @@ impl HostFaults {
     pub fn sense_late(&mut self, measurement: &Measurement, lateness: f64) -> ControllerInputs {
         let lateness = (lateness / self.period * f64::from(LATENESS_PARTS)).round() as u32;
         let time = measurement.period as f64 * self.period;
-        let shafts = [Shaft::Motor, Shaft::Link];
+        let shafts = [EncoderShaft::Motor, EncoderShaft::Link];
         let counts = [measurement.motor_counts, measurement.output_counts];
         let start = self.start;
         let home = *self.home.get_or_insert([counts[0] - start[0], counts[1] - start[1]]);
@@ -220,7 +220,7 @@ impl HostFaults {
 
 /// Readings that an encoder drops by itself, as faults of the whole run with their own random numbers.
 fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = ActiveFault> {
-    let of = [(Shaft::Motor, "missing frames motor"), (Shaft::Link, "missing frames output")];
+    let of = [(EncoderShaft::Motor, "missing frames motor"), (EncoderShaft::Link, "missing frames output")];
     of.into_iter().zip(shares).filter(|(_, share)| *share > 0.0).map(move |((shaft, stream), share)| {
         let kind = FaultKind::LostReadings(shaft, share);
         let fault = Fault { start: 0.0, end: f64::INFINITY, seed: (), kind };

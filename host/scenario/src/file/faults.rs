@@ -1,6 +1,6 @@
 //! Reads `[[fault]]`: kind, start and end of a fault, in SI.
 
-use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
+use model_core::virtual_joint::fault::{self, EncoderShaft, FaultKind, FaultUnits};
 
 use super::motion::reject_unused_keys;
 use super::section::Section;
@@ -14,7 +14,7 @@ pub type Fault = fault::Fault<Si>;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Si;
 
-impl Units for Si {
+impl FaultUnits for Si {
     type Time = f64;
     type Seed = ();
     type Offset = Offset;
@@ -38,7 +38,7 @@ pub struct Offset {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HostOnlyFault {
     /// Readings of an encoder arrive late [s].
-    LateReadings(Shaft, f64),
+    LateReadings(EncoderShaft, f64),
     /// Share of the set-points that are lost.
     LostSetPoints(f64),
     /// Set-points arrive late [s].
@@ -52,7 +52,7 @@ pub enum HostOnlyFault {
 /// Source of frames.
 #[derive(Clone, Copy)]
 enum FrameSource {
-    Readings(Shaft),
+    Readings(EncoderShaft),
     SetPoints,
 }
 
@@ -105,13 +105,13 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
     let known_keys: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
     reject_unused_keys(section, &known_keys, word);
     let encoder = match section.word("encoder") {
-        Some("motor") => Shaft::Motor,
-        _ => Shaft::Link,
+        Some("motor") => EncoderShaft::Motor,
+        _ => EncoderShaft::Link,
     };
     let frames = match section.word("frames") {
-        Some("motor") => FrameSource::Readings(Shaft::Motor),
+        Some("motor") => FrameSource::Readings(EncoderShaft::Motor),
         Some("set_points") => FrameSource::SetPoints,
-        _ => FrameSource::Readings(Shaft::Link),
+        _ => FrameSource::Readings(EncoderShaft::Link),
     };
     let needed = |name: &str| section.required(name, Section::number);
     let one_of = |names: [&str; 2]| {

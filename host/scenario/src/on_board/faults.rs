@@ -3,8 +3,8 @@
 
 use std::f64::consts::TAU;
 
-use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
-use model_core::virtual_joint::faults::MOST_FAULTS;
+use model_core::virtual_joint::fault::{EncoderShaft, Fault, FaultKind, FixedPoint};
+use model_core::virtual_joint::fault_injector::MAX_FAULTS;
 use parameters::Surroundings;
 
 use crate::encoder_zeros::EncoderZeros;
@@ -16,7 +16,7 @@ use report::failure::{Failure, Outcome};
 const WHOLE_TURN: f64 = 4_294_967_296.0;
 
 /// Largest number of faults of a test: two entries of the board hold the encoder zeros.
-const MAX_TEST_FAULTS: usize = MOST_FAULTS - 2;
+const MAX_TEST_FAULTS: usize = MAX_FAULTS - 2;
 
 /// Counts per turn of both encoders of a joint, motor first.
 pub fn counts_per_turn(around: &Surroundings) -> [i64; 2] {
@@ -39,7 +39,7 @@ pub fn mounting_angles(zeros: &EncoderZeros, turns: [i64; 2]) -> [u32; 2] {
 /// Zeros of both encoders as faults for the whole run: a board's virtual joint reads zero at angle zero.
 pub fn mounting_faults(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>>; 2] {
     let angles = mounting_angles(zeros, turns);
-    [(Shaft::Motor, 0), (Shaft::Link, 1)].map(|(shaft, encoder)| {
+    [(EncoderShaft::Motor, 0), (EncoderShaft::Link, 1)].map(|(shaft, encoder)| {
         let kind = FaultKind::Offset(shaft, angles[encoder].cast_signed());
         Fault { start: 0, end: u32::MAX, seed: 0, kind }
     })
@@ -69,7 +69,7 @@ pub fn quantised_faults(
 }
 
 fn quantised_kind(fault: &file::Fault, turns: [i64; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
-    let turn = |of: Shaft| turns[usize::from(of == Shaft::Link)];
+    let turn = |of: EncoderShaft| turns[usize::from(of == EncoderShaft::Link)];
     // Whole turns cancel.
     let angle = |parts: f64| parts.round() as i64;
     let share = |share: f64| (share * WHOLE_TURN).min(WHOLE_TURN - 1.0) as u32;
@@ -109,7 +109,7 @@ mod tests {
     use model_core::observer::{Reading, Samples};
     use model_core::virtual_joint::SurroundingsTable;
     use model_core::virtual_joint::design::design_surroundings;
-    use model_core::virtual_joint::faults::Faults;
+    use model_core::virtual_joint::fault_injector::FaultInjector;
 
     use super::*;
     use crate::file::Si;
@@ -126,20 +126,20 @@ mod tests {
     /// Samples of a shaft that advances by `step` counts a period, and the motor's torque for a command of 1 N m.
     fn run(kind: FaultKind<Si>, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
         let fault = Fault { start: 0.01, end: 0.5, seed: (), kind };
-        let mut faults = Faults::default();
+        let mut faults = FaultInjector::default();
         assert!(quantised_faults(&[fault], RATE, TURNS, 5).expect("possible").iter().all(|fault| faults.add(*fault)));
         let table = table();
         let one = |period: u32| {
             let reading = |bits: u32| Reading { counts: (period * step) % (1 << bits), time: period };
             let samples = Samples { time: period, motor: reading(14), output: Some(reading(17)), torque: 9.0 };
-            (faults.sense(samples, &table), faults.torque(1.0))
+            (faults.apply_to_samples(samples, &table), faults.apply_to_torque(1.0))
         };
         (0..periods).map(one).collect()
     }
 
     #[test]
     fn frozen_encoder_holds_until_end() {
-        let seen = run(FaultKind::Frozen(Shaft::Link), 6000, 3);
+        let seen = run(FaultKind::Frozen(EncoderShaft::Link), 6000, 3);
         let counts = |period: usize| seen[period].0.output.expect("a reading").counts;
         assert_eq!([counts(99), counts(100), counts(4999), counts(5000)], [297, 300, 300, 15_000]);
         assert!(seen.iter().zip(0..).all(|((samples, _), period)| samples.motor.counts == 3 * period % (1 << 14)));
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn offset_noise_missing_counts_values() {
-        let output = Shaft::Link;
+        let output = EncoderShaft::Link;
         let off = |seen: &[(Samples<f32>, f32)], step: u32| -> Vec<i32> {
             let beside = |(samples, period): (&(Samples<f32>, f32), u32)| {
                 let counts = samples.0.output.expect("a reading").counts;
@@ -171,10 +171,10 @@ mod tests {
 
     #[test]
     fn lost_readings_hold_last_motor_reading() {
-        let lost = run(FaultKind::LostReadings(Shaft::Link, 0.2), 5000, 3);
+        let lost = run(FaultKind::LostReadings(EncoderShaft::Link, 0.2), 5000, 3);
         let missing = lost.iter().filter(|(samples, _)| samples.output.is_none()).count();
         assert!((880..1080).contains(&missing), "{missing}");
-        let motor = run(FaultKind::LostReadings(Shaft::Motor, 1.0), 5000, 3);
+        let motor = run(FaultKind::LostReadings(EncoderShaft::Motor, 1.0), 5000, 3);
         assert_eq!(motor[4000].0.motor, Reading { counts: 297, time: 99 });
     }
 
@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn host_only_fault_rejected_with_remedy() {
         for kind in [
-            HostOnlyFault::LateReadings(Shaft::Link, 0.001),
+            HostOnlyFault::LateReadings(EncoderShaft::Link, 0.001),
             HostOnlyFault::LostSetPoints(0.1),
             HostOnlyFault::LateSetPoints(0.001),
             HostOnlyFault::GrownBacklash(6e-5),
@@ -201,7 +201,7 @@ mod tests {
             let failure = quantised_faults(&[fault], RATE, TURNS, 1).unwrap_err();
             assert!(failure.message().contains(&name) && failure.help().is_some(), "{failure}");
         }
-        let kind = FaultKind::Frozen(Shaft::Motor);
+        let kind = FaultKind::Frozen(EncoderShaft::Motor);
         let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MAX_TEST_FAULTS + 1];
         assert!(quantised_faults(&many, RATE, TURNS, 1).is_err());
     }

@@ -13,8 +13,8 @@ use model_core::gears::design::design;
 use model_core::observer::{Reading, Samples};
 use model_core::virtual_joint::SurroundingsTable;
 use model_core::virtual_joint::design::design_surroundings;
-use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
-use model_core::virtual_joint::faults::Faults;
+use model_core::virtual_joint::fault::{EncoderShaft, Fault, FaultKind};
+use model_core::virtual_joint::fault_injector::FaultInjector;
 use reference::drive_train::Measurement;
 
 use super::faults::{counts_per_turn, quantised_faults};
@@ -77,7 +77,7 @@ impl FaultPair {
         let faults: Vec<_> = kinds.iter().map(|kind| Fault { start: START, end: END, seed: (), kind: *kind }).collect();
         let rate = f64::from(self.case.truth.surroundings.control_rate);
         let mut host = HostFaults::new(&faults, 1, &self.case.truth.parameters, &self.case.train);
-        let mut board = Faults::default();
+        let mut board = FaultInjector::default();
         let quantised = quantised_faults(&faults, rate, self.turns, 1).expect("a board can do it");
         assert!(quantised.iter().all(|fault| board.add(*fault)), "there is room");
         let one = |period: u32| {
@@ -89,22 +89,25 @@ impl FaultPair {
             let within = |of: usize| counts[of].rem_euclid(turn[of]) as u32;
             let reading = |of: usize| Reading { counts: within(of), time: period };
             let samples = Samples { time: period, motor: reading(0), output: Some(reading(1)), torque: 0.0 };
-            let samples = board.sense(samples, &self.table);
+            let samples = board.apply_to_samples(samples, &self.table);
             let command = 2.5 * (TAU * f64::from(period) / 500.0).sin();
             Period {
                 counts,
                 host: [Some(seen.motor), seen.output].map(|frame| frame.map(|frame| (frame.counts, frame.period))),
                 board: [Some(samples.motor), samples.output]
                     .map(|reading| reading.map(|reading| (reading.counts, reading.time))),
-                torques: [host.torque(f64::from(period) / rate, command), f64::from(board.torque(command as f32))],
+                torques: [
+                    host.torque(f64::from(period) / rate, command),
+                    f64::from(board.apply_to_torque(command as f32)),
+                ],
             }
         };
         (0..PERIODS).map(one).collect()
     }
 
     /// Errors of an encoder's counts on the host and on the board in every period; every reading must have arrived.
-    fn count_errors(&self, run: &[Period], shaft: Shaft) -> Vec<[i64; 2]> {
-        let of = usize::from(shaft == Shaft::Link);
+    fn count_errors(&self, run: &[Period], shaft: EncoderShaft) -> Vec<[i64; 2]> {
+        let of = usize::from(shaft == EncoderShaft::Link);
         let turn = self.turns[of];
         // Wraps to within half a turn.
         let near = |counts: i64| (counts + turn / 2).rem_euclid(turn) - turn / 2;
@@ -117,10 +120,10 @@ impl FaultPair {
     }
 }
 
-const SHAFTS: [Shaft; 2] = [Shaft::Motor, Shaft::Link];
+const SHAFTS: [EncoderShaft; 2] = [EncoderShaft::Motor, EncoderShaft::Link];
 
-fn other(shaft: Shaft) -> Shaft {
-    if shaft == Shaft::Motor { Shaft::Link } else { Shaft::Motor }
+fn other(shaft: EncoderShaft) -> EncoderShaft {
+    if shaft == EncoderShaft::Motor { EncoderShaft::Link } else { EncoderShaft::Motor }
 }
 
 #[test]
@@ -184,7 +187,7 @@ fn encoder_noise_agrees_in_deviation() {
 fn lost_readings_agree_in_share() {
     let all = FaultPair::all();
     for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
-        let of = usize::from(shaft == Shaft::Link);
+        let of = usize::from(shaft == EncoderShaft::Link);
         let turn = both.turns[of];
         let came = |reading: Option<(i64, u64)>, period: usize| reading.is_some_and(|(_, time)| time == period as u64);
         for share in [0.2, 1.0] {
@@ -199,7 +202,7 @@ fn lost_readings_agree_in_share() {
                         came(reading, number) || ACTIVE_PERIODS.contains(&number),
                         "{shaft:?}: lost in period {number}"
                     );
-                    assert!(shaft == Shaft::Link || reading.is_some(), "a motor's last word stands");
+                    assert!(shaft == EncoderShaft::Link || reading.is_some(), "a motor's last word stands");
                     if let Some((counts, time)) = reading {
                         assert_eq!(counts, run[time as usize].counts[of].rem_euclid(turn), "{shaft:?} in {number}");
                     }

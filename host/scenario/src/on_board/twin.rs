@@ -14,7 +14,7 @@ use model_core::gears::{Scheme, Tables};
 use model_core::numbers::digest;
 use model_core::virtual_joint::design::design_surroundings;
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
-use model_core::virtual_joint::faults::Faults;
+use model_core::virtual_joint::fault_injector::FaultInjector;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::{Motion, Sample};
 
@@ -95,7 +95,7 @@ impl Twin<'_> {
         controller: &mut Controller<'_, f32>,
     ) -> TwinResult {
         let mut virtual_joint = VirtualJoint::new(tables, table);
-        let mut faults = Faults::default();
+        let mut faults = FaultInjector::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
         let [_, mounted] = mounting_angles(&self.case.zeros, counts_per_turn(&self.truth.surroundings));
@@ -116,9 +116,9 @@ impl Twin<'_> {
             }
             let elapsed = f32::from((period - since).min(u16::MAX.into()) as u16);
             let command = demand.at(table.period * elapsed, table.turn);
-            let samples = faults.sense(virtual_joint.samples(), table);
+            let samples = faults.apply_to_samples(virtual_joint.samples(), table);
             let answer = controller.step(&samples, &command);
-            virtual_joint.advance(faults.torque(answer.shaped.torque), load);
+            virtual_joint.advance(faults.apply_to_torque(answer.shaped.torque), load);
             running = digest::chain(answer.digest(running), virtual_joint.model().state_digest());
             digests.push(running);
 

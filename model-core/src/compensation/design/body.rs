@@ -4,7 +4,7 @@ use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};
 
 /// Joint, referred to the link.
-pub(super) struct Body {
+pub(super) struct JointBody {
     pub gear: f64,
     pub lever: f64,
     pub half_backlash: f64,
@@ -18,7 +18,7 @@ pub(super) struct Body {
     pub strike_impedance: f64,
 }
 
-impl Body {
+impl JointBody {
     pub fn new(joint: &JointParameters) -> Self {
         let geometry = &joint.geometry;
         let (gear, lever) = (geometry.ratio_by_teeth(), geometry.carrier_base_radius());

@@ -1,20 +1,20 @@
 //! Tests of the integral under the motor's limit.
 
-use super::watch_tests::tables;
+use super::monitor_tests::tables;
 use crate::compensation::integral::Integral;
 use crate::compensation::tables::CompensationTables;
 
 /// Returns an integral whose torque has swung from limit to limit.
 fn swinging(tables: &CompensationTables<f32>) -> Integral<f32> {
     let mut integral = Integral::new();
-    integral.watch(tables, tables.limits.motor, 1.0);
-    integral.watch(tables, -tables.limits.motor, 1.0);
+    integral.detect_swing(tables, tables.limits.motor, 1.0);
+    integral.detect_swing(tables, -tables.limits.motor, 1.0);
     assert!(integral.swings());
     integral
 }
 
 #[test]
-fn a_swinging_integral_waits_under_the_limit() {
+fn swinging_integral_is_held_under_the_limit() {
     let tables = tables();
     let mut integral = swinging(&tables);
     for cut in [-1.0, 1.0] {
@@ -26,7 +26,7 @@ fn a_swinging_integral_waits_under_the_limit() {
 }
 
 #[test]
-fn a_steady_integral_gives_up_what_the_limit_cuts_off() {
+fn steady_integral_gives_back_the_cut_torque() {
     let tables = tables();
     let mut integral = Integral::new();
     integral.integrate(&tables, 0.0, -1.0);

@@ -1,9 +1,9 @@
 //! Tests of the adaptive inverse of the backlash with designed tables, in control of a motor and a link with play.
 
-use super::watch_tests::tables;
+use super::monitor_tests::tables;
 use crate::compensation::inverse::BacklashInverse;
+use crate::compensation::loop_state::LoopState;
 use crate::compensation::set_point::{CommandRef, Motion, Position};
-use crate::compensation::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::observer::{Estimates, Source};
 
@@ -55,8 +55,8 @@ impl Rig {
         self.error * libm::sin(72.0 * self.link[0])
     }
 
-    /// Returns the situation for a set-point.
-    fn situation(&self, now: &Motion<f32>) -> Situation<f32> {
+    /// Returns the state for a set-point.
+    fn state(&self, now: &Motion<f32>) -> LoopState<f32> {
         let turns = |radians: f64| (radians / core::f64::consts::TAU) as f32;
         let mut estimates = Estimates {
             source: Source::Both,
@@ -68,23 +68,23 @@ impl Rig {
         estimates.link.fraction = turns(self.link[0]);
         estimates.link.speed = self.link[1] as f32;
         estimates.motor.speed = self.motor[1] as f32 / self.tables.gear.link_per_motor;
-        Situation::new(&self.tables, &estimates, 0.0, CommandRef::Position { now, ahead: None })
+        LoopState::new(&self.tables, &estimates, 0.0, CommandRef::Position { now, ahead: None })
     }
 
     /// Simulates a period; returns the error of the link [rad] and the torque [N m].
     fn step(&mut self, now: &Motion<f32>) -> (f64, f64) {
-        let situation = self.situation(now);
+        let state = self.state(now);
         if self.period.is_multiple_of(3) {
-            self.inverse.observe(&self.tables, &situation, now);
+            self.inverse.update_edges(&self.tables, &state, now);
         }
-        let torque = self.inverse.follow(&self.tables, &situation, now, false);
-        self.inverse.take(&self.tables, &situation, Some(0.0));
+        let torque = self.inverse.torque(&self.tables, &state, now, false);
+        self.inverse.update_integral(&self.tables, &state, Some(0.0));
         if self.period % 3 == 1 {
-            self.inverse.learn(&self.tables, torque);
+            self.inverse.estimate(&self.tables, torque);
         }
         self.period += 1;
         self.advance(f64::from(torque));
-        (f64::from(situation.error), f64::from(torque))
+        (f64::from(state.error), f64::from(torque))
     }
 
     fn advance(&mut self, torque: f64) {
@@ -134,7 +134,7 @@ impl Rig {
 }
 
 #[test]
-fn edges_that_the_torque_has_pressed_take_most_of_the_lost_motion_out() {
+fn pressed_edges_remove_most_of_the_lost_motion() {
     // The flank in the direction of motion carries a link with friction: without an inverse the link lags by half the
     // play.
     let mut rig = Rig { guess: 0.4 * HALF, ..Rig::new(1.0, 2.0) };
@@ -143,7 +143,7 @@ fn edges_that_the_torque_has_pressed_take_most_of_the_lost_motion_out() {
 }
 
 #[test]
-fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
+fn wrong_inertia_is_estimated_from_the_torque() {
     let rig = Rig::new(1.0, 0.0);
     let total = rig.tables.body.motor_inertia + rig.tables.body.load_inertia;
     for ratio in [0.7, 1.6] {
@@ -152,14 +152,14 @@ fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
         for period in 0..60_000_u32 {
             let phase = core::f32::consts::TAU * 3.0 * rig.tables.clock.period * period as f32;
             let now = Motion { acceleration: 20.0 * libm::sinf(phase), ..Motion::default() };
-            let situation = rig.situation(&now);
-            inverse.observe(&rig.tables, &situation, &now);
-            inverse.take(&rig.tables, &situation, None);
-            inverse.learn(&rig.tables, ratio * total * now.acceleration);
+            let state = rig.state(&now);
+            inverse.update_edges(&rig.tables, &state, &now);
+            inverse.update_integral(&rig.tables, &state, None);
+            inverse.estimate(&rig.tables, ratio * total * now.acceleration);
         }
         let [some, none] = [20.0, 0.0].map(|acceleration| {
             let now = Motion { acceleration, ..Motion::default() };
-            inverse.clone().follow(&rig.tables, &rig.situation(&now), &now, false)
+            inverse.clone().torque(&rig.tables, &rig.state(&now), &now, false)
         });
         let fed_forward = (some - none) / (20.0 * total);
         assert!((fed_forward - ratio).abs() < 0.03, "{fed_forward} of what was designed, {ratio} in truth");
@@ -167,7 +167,7 @@ fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
 }
 
 #[test]
-fn a_joint_at_rest_whose_gap_nobody_knows_stays_as_it_stands() {
+fn joint_at_rest_with_unknown_gap_stays() {
     let mut rig = Rig::new(1.0, 0.5);
     rig.motor[0] += 0.8 * HALF;
     for _ in 0..10_000 {
@@ -177,22 +177,22 @@ fn a_joint_at_rest_whose_gap_nobody_knows_stays_as_it_stands() {
 }
 
 #[test]
-fn it_takes_over_from_another_law_where_the_motor_stands_with_the_torque_that_holds_the_load() {
+fn takeover_holds_position_and_load() {
     let mut rig = Rig::new(1.0, 0.5);
     // The other law pushes with 3 N m against a held link.
     for _ in 0..30_000 {
-        let situation = rig.situation(&Motion::default());
-        rig.inverse.observe(&rig.tables, &situation, &Motion::default());
-        rig.inverse.take(&rig.tables, &situation, None);
-        rig.inverse.learn(&rig.tables, 3.0);
+        let state = rig.state(&Motion::default());
+        rig.inverse.update_edges(&rig.tables, &state, &Motion::default());
+        rig.inverse.update_integral(&rig.tables, &state, None);
+        rig.inverse.estimate(&rig.tables, 3.0);
     }
-    let situation = rig.situation(&Motion::default());
-    let torque = rig.inverse.follow(&rig.tables, &situation, &Motion::default(), false);
+    let state = rig.state(&Motion::default());
+    let torque = rig.inverse.torque(&rig.tables, &state, &Motion::default(), false);
     assert!((torque - 3.0).abs() < 0.15, "{torque} N m");
 }
 
 #[test]
-fn a_link_that_a_push_sends_to_the_other_flank_is_met_on_its_way() {
+fn pushed_link_is_met_on_its_way() {
     let mut rig = Rig::new(1.0, 0.5);
     let mut peak = |push: f64| {
         rig.push = push;
@@ -206,7 +206,7 @@ fn a_link_that_a_push_sends_to_the_other_flank_is_met_on_its_way() {
 }
 
 #[test]
-fn flanks_that_a_transmission_error_moves_are_followed_before_any_was_pressed() {
+fn transmission_error_is_followed_before_any_edge() {
     let mut rig = Rig { error: 2.0 * HALF, ..Rig::new(1.0, 2.0) };
     let rms = rig.sine(0.3, 0.5, 2.0);
     assert!(rms < HALF, "{rms} rad of an error of {} rad", rig.error);

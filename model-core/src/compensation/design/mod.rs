@@ -3,18 +3,18 @@
 mod body;
 mod damping;
 #[cfg(test)]
-mod demand_tests;
+mod demand_estimator_tests;
 #[cfg(test)]
 mod integral_tests;
 #[cfg(test)]
 mod inverse_tests;
 #[cfg(test)]
-mod load_swing_tests;
+mod monitor_tests;
+#[cfg(test)]
+mod payload_swing_tests;
 mod settings;
 mod stability;
 mod tables;
-#[cfg(test)]
-mod watch_tests;
 
 pub use settings::{CompensationSettings, compensation_settings};
 pub use stability::{BandwidthRange, bandwidth_range, good_bandwidth};

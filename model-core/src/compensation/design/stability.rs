@@ -1,8 +1,8 @@
 //! Limits of bandwidth and control rate of a joint (K25).
 //!
 //! In the open gap, plain control moves the motor alone, with gains made for motor and link together. With the motor's
-//! inertia J_m, the total inertia J, the bandwidth w, the damper D on the motor ([`damping_on_motor`]), the lag t of
-//! the current loop, and a dead time of the torque's delay plus half a period, the loop is
+//! inertia J_m, the total inertia J, the bandwidth w, the damper D on the motor ([`swinging_motor_damping`]), the lag t
+//! of the current loop, and a dead time of the torque's delay plus half a period, the loop is
 //!
 //! ```text
 //! L(s) = (D s + 3 J w^2 + J w^3 / s) / (J_m s^2 (1 + t s)) e^(-s dead time)
@@ -17,49 +17,29 @@
 //! limits:
 //!
 //! ```text
-//! first swing    w <= sqrt(K (1/J_m + 1/J_l)) / SWING
-//! crossing time  w <= CROSSING / (2 sqrt(gap J_m / T))
+//! first swing    w <= sqrt(K (1/J_m + 1/J_l)) / swing_ratio
+//! crossing time  w <= crossing_ratio / (2 sqrt(gap J_m / T))
 //! ```
 
 use core::f64::consts::PI;
 
-use super::body::Body;
-use super::damping::{of_both, on_motor_alone, reaction};
+use super::body::JointBody;
+use super::damping::{loop_damping, motor_damping_bound, reaction};
 use super::settings::{self, CompensationSettings, compensation_settings};
-use crate::compensation::plain::damping_on_motor;
+use crate::compensation::plain::swinging_motor_damping;
+use crate::compensation::thresholds::BANDWIDTH;
 use crate::gears::design::{BandwidthLimit, DesignError, validate};
 use parameters::{JointParameters, Surroundings};
 
-/// Smallest phase margin of the motor alone in the open gap [rad]: three degrees. Measured on joints with up to a fifth
-/// more lag than on the data sheet: down to 4.7 degrees the gap was estimated on as many joints as at any rate; below
-/// zero it was not estimated on a third to nearly all of them.
-const LEAST_MARGIN: f64 = 3.0 * PI / 180.0;
-
-/// Smallest number of control periods per time constant 1/w. Measured: from 33 on the gap was estimated on as many
-/// joints as at any rate; at 28 and below, not on all of them.
-const PERIODS: f64 = 33.0;
-
-/// Smallest frequency of the first swing of motor against link, over the bandwidth [-]. Tuned on one strain wave gear
-/// in motion T2: hunting at 3.9, none at 5; inertias 30 % off move the swing by 15 %. No test holds it yet.
-const SWING: f64 = 5.0;
-
-/// Largest crossing time from rest to rest at the largest torque, over the time constant of the loop [-]. Tuned on one
-/// joint with 80 mrad of play in a sine of 1 Hz: the link is thrown from flank to flank at 0.56, not at 0.42; the guess
-/// of the gap may be half of the gap. No test holds it yet.
-const CROSSING: f64 = 0.3;
-
-/// Default bandwidth, where the joint permits it [rad/s].
-const USUAL: f64 = 60.0;
-
-/// Highest control rate considered [Hz].
-const FASTEST: f64 = 1e5;
+/// Smallest phase margin of the motor alone in the open gap [rad].
+const MIN_PHASE_MARGIN: f64 = BANDWIDTH.phase_margin * PI / 180.0;
 
 /// Bisection steps for a frequency, a rate or a bandwidth: to a millionth.
 const HALVINGS: usize = 60;
 
 /// Rejects a bandwidth that is too wide for the joint, and a control rate that is too slow for the bandwidth.
-pub(super) fn check(body: &Body, settings: &CompensationSettings) -> Result<(), DesignError> {
-    let (widest, limit) = of_joint(body, settings);
+pub(super) fn check(body: &JointBody, settings: &CompensationSettings) -> Result<(), DesignError> {
+    let (widest, limit) = joint_bandwidth_limit(body, settings);
     if settings.bandwidth > widest {
         return Err(DesignError::BandwidthTooWide { bandwidth: settings.bandwidth, widest, limit });
     }
@@ -67,13 +47,13 @@ pub(super) fn check(body: &Body, settings: &CompensationSettings) -> Result<(), 
 }
 
 /// Widest bandwidth that the joint permits [rad/s], rounded down to three digits, and the property that limits it.
-fn of_joint(body: &Body, settings: &CompensationSettings) -> (f64, BandwidthLimit) {
+fn joint_bandwidth_limit(body: &JointBody, settings: &CompensationSettings) -> (f64, BandwidthLimit) {
     let swing = libm::sqrt(body.stiffness * (1.0 / body.motor + 1.0 / body.load));
     let gap = 2.0 * body.half_backlash / body.lever;
     let crossing = 2.0 * libm::sqrt(gap * body.motor / (body.gear * settings.torque_limit));
     // A joint without a gap has no crossing.
-    let by_crossing = if crossing > 0.0 { CROSSING / crossing } else { f64::INFINITY };
-    let by_swing = swing / SWING;
+    let by_crossing = if crossing > 0.0 { BANDWIDTH.crossing_ratio / crossing } else { f64::INFINITY };
+    let by_swing = swing / BANDWIDTH.swing_ratio;
     if by_swing < by_crossing {
         (rounded_down(by_swing), BandwidthLimit::Swing(swing))
     } else {
@@ -110,18 +90,18 @@ pub struct BandwidthRange {
 /// Returns an error if the joint is invalid or a setting is out of range.
 pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<BandwidthRange, DesignError> {
     validate(joint)?;
-    let mut settings = compensation_settings(of, USUAL);
+    let mut settings = compensation_settings(of, BANDWIDTH.default);
     settings::check(&settings)?;
-    let body = Body::new(joint);
-    let (of_joint, limit) = of_joint(&body, &settings);
+    let body = JointBody::new(joint);
+    let (by_joint, limit) = joint_bandwidth_limit(&body, &settings);
     // Without a limit by the joint, a bandwidth beyond every control rate is requested.
-    settings.bandwidth = of_joint.min(f64::from(of.control_rate));
+    settings.bandwidth = by_joint.min(f64::from(of.control_rate));
     let (widest, limit) = match check_rate(&body, &settings) {
-        Ok(()) => (of_joint, Some(limit)),
+        Ok(()) => (by_joint, Some(limit)),
         Err(DesignError::ControlTooSlow { widest, .. }) => (widest, None),
         Err(other) => return Err(other),
     };
-    Ok(BandwidthRange { usual: USUAL.min(widest), widest, limit })
+    Ok(BandwidthRange { usual: BANDWIDTH.default.min(widest), widest, limit })
 }
 
 /// Default bandwidth: 60 rad/s, or the widest that joint, control rate and delays permit, if that is less [rad/s].
@@ -134,23 +114,23 @@ pub fn good_bandwidth(joint: &JointParameters, of: &Surroundings) -> Result<f64,
 }
 
 /// Rejects a control rate that is too slow for the bandwidth.
-fn check_rate(body: &Body, settings: &CompensationSettings) -> Result<(), DesignError> {
+fn check_rate(body: &JointBody, settings: &CompensationSettings) -> Result<(), DesignError> {
     let rate = f64::from(settings.control_rate);
-    let bears = |rate: f64, bandwidth: f64| {
-        rate >= PERIODS * bandwidth && phase_margin(body, settings, rate, bandwidth) >= LEAST_MARGIN
+    let permits = |rate: f64, bandwidth: f64| {
+        rate >= BANDWIDTH.periods * bandwidth && phase_margin(body, settings, rate, bandwidth) >= MIN_PHASE_MARGIN
     };
-    if bears(rate, settings.bandwidth) {
+    if permits(rate, settings.bandwidth) {
         return Ok(());
     }
-    let lowest = bears(FASTEST, settings.bandwidth)
-        .then(|| libm::ceil(between(rate, FASTEST, |rate| bears(rate, settings.bandwidth))) as u32);
-    let widest = between(settings.bandwidth.min(rate / PERIODS), 0.0, |bandwidth| bears(rate, bandwidth));
+    let lowest = permits(BANDWIDTH.fastest_rate, settings.bandwidth)
+        .then(|| libm::ceil(bisect(rate, BANDWIDTH.fastest_rate, |rate| permits(rate, settings.bandwidth))) as u32);
+    let widest = bisect(settings.bandwidth.min(rate / BANDWIDTH.periods), 0.0, |bandwidth| permits(rate, bandwidth));
     let widest = rounded_down(widest);
     Err(DesignError::ControlTooSlow { given: settings.control_rate, bandwidth: settings.bandwidth, lowest, widest })
 }
 
 /// Finds by bisection the value nearest to `bad` for which `holds` is true, as it is at `good`.
-fn between(bad: f64, good: f64, holds: impl Fn(f64) -> bool) -> f64 {
+fn bisect(bad: f64, good: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut bad, mut good) = (bad, good);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (bad + good);
@@ -169,11 +149,11 @@ fn rounded_down(value: f64) -> f64 {
 }
 
 /// Phase margin of the motor alone in the open gap [rad].
-fn phase_margin(body: &Body, settings: &CompensationSettings, rate: f64, bandwidth: f64) -> f64 {
+fn phase_margin(body: &JointBody, settings: &CompensationSettings, rate: f64, bandwidth: f64) -> f64 {
     let CompensationSettings { torque_delay, torque_lag, .. } = *settings;
     let period = 1.0 / rate;
-    let both = of_both(body, bandwidth);
-    let damper = damping_on_motor(on_motor_alone(body, both, reaction(settings, period)));
+    let both = loop_damping(body, bandwidth);
+    let damper = swinging_motor_damping(motor_damping_bound(body, both, reaction(settings, period)));
     let (spring, integral) = (both * bandwidth, both * bandwidth * bandwidth / 3.0);
     // Numerator: `spring` is in phase with the position, this part leads it.
     let ahead = |frequency: f64| damper * frequency - integral / frequency;
@@ -183,7 +163,7 @@ fn phase_margin(body: &Body, settings: &CompensationSettings, rate: f64, bandwid
     };
     // The gain falls with the frequency, so that the crossover is unique.
     let below_one = |log: f64| gain(libm::exp(log)) < 1.0;
-    let crossover = libm::exp(between(libm::log(1e-3 * bandwidth), libm::log(1e3 * rate), below_one));
+    let crossover = libm::exp(bisect(libm::log(1e-3 * bandwidth), libm::log(1e3 * rate), below_one));
     let lost = libm::atan(torque_lag * crossover) + crossover * period * (0.5 + torque_delay);
     libm::atan2(ahead(crossover), spring) - lost
 }

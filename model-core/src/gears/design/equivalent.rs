@@ -10,8 +10,8 @@ use crate::gears::design::exponential;
 use crate::gears::mechanics::Mechanics;
 use crate::gears::scales::Scales;
 use crate::gears::tables::{
-    Block, Excitation, Flow, Inputs, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Transition, Units,
-    VerletTable,
+    Block, Excitation, FlowTable, Inputs, MeshTable, Mobility, Rigid, Scheme, Spring, StageTable, Tables,
+    TransitionTable, UnitTable, VerletTable,
 };
 use crate::numbers::Real;
 use parameters::{JointParameters, MAX_HARMONICS, MESH_KINDS, MeshKind};
@@ -24,7 +24,7 @@ pub const LARGEST_PHASE: f64 = 0.7;
 pub fn tables<T: Real, const N: usize>(
     parameters: &JointParameters,
     tick_rate: u32,
-    units: Units<T>,
+    units: UnitTable<T>,
     rigid: Rigid<T>,
 ) -> Tables<T, N> {
     let real = T::from_f64;
@@ -65,7 +65,7 @@ pub fn tables<T: Real, const N: usize>(
         },
         springs: MESH_KINDS.map(spring),
         meshes: MESH_KINDS.map(|kind| array::from_fn(|planet| mesh(kind, planet))),
-        stage: Stage { rate: T::ZERO, square_sixth: T::ZERO, mobility: no_mobility(), damping: [T::ZERO; 2] },
+        stage: StageTable { rate: T::ZERO, square_sixth: T::ZERO, mobility: no_mobility(), damping: [T::ZERO; 2] },
         flow: flow(step, scales.damping(parameters.damping_coefficient(MeshKind::SunPlanet))),
         verlet: VerletTable {
             substeps: 0,
@@ -85,7 +85,7 @@ pub fn tables<T: Real, const N: usize>(
 }
 
 /// Computes the flow of the gap in contact, y'' = -y - c y', over a step.
-fn flow<T: Real>(step: f64, damping: f64) -> Flow<T> {
+fn flow<T: Real>(step: f64, damping: f64) -> FlowTable<T> {
     let motion = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -damping]);
     let exact = exponential::exponential_minus_identity(&motion, step);
     // Mean planet, gap and wind-up, then their rates: the planet has half the gap.
@@ -97,7 +97,7 @@ fn flow<T: Real>(step: f64, damping: f64) -> Flow<T> {
     }
     let mut whole = no_transition();
     whole.in_phase = Block(in_phase);
-    Flow {
+    FlowTable {
         whole,
         early: no_transition(),
         late: no_transition(),
@@ -115,8 +115,8 @@ fn flow<T: Real>(step: f64, damping: f64) -> Flow<T> {
     }
 }
 
-fn no_transition<T: Real>() -> Transition<T> {
-    Transition {
+fn no_transition<T: Real>() -> TransitionTable<T> {
+    TransitionTable {
         in_phase: Block(SMatrix::zeros()),
         deviation: Block(SMatrix::zeros()),
         torques: Block(SMatrix::zeros()),

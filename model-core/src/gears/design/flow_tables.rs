@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVectorView, SMatrix};
 use crate::gears::design::dynamics::Dynamics;
 use crate::gears::design::exponential::{self, flow as integrate};
 use crate::gears::design::hamiltonian;
-use crate::gears::tables::{Block, Flow, Inputs, Transition};
+use crate::gears::tables::{Block, FlowTable, Inputs, TransitionTable};
 use crate::numbers::Real;
 
 /// Largest advance of the mesh phase per step [periods]: the error of a parabola through the excitation is about 1e-3 of the
@@ -44,7 +44,7 @@ pub enum WholeTicks {
 const NODES: [f64; 2] = [0.4, 0.9];
 
 /// Computes the flow over `step` (dimensionless); `substeps` is the number of sub-steps of the step, the unit of rates.
-pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks: WholeTicks) -> Flow<T> {
+pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks: WholeTicks) -> FlowTable<T> {
     let sorting = Sorting::new(dynamics);
     let [first, second] = NODES;
     let whole = sorting.integrate(step, 4);
@@ -68,7 +68,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks:
     let early_inputs = inputs(&early, first, &[vec![1.0], vec![0.0, rate]]);
     let late_inputs = inputs(&late, second, &parabola);
     let whole_inputs = inputs(&whole, 1.0, &cubic(first, second, rate));
-    Flow {
+    FlowTable {
         whole_constant: sorting.inputs(constant),
         whole_linear: [sorting.inputs(&(constant - linear * 2.0)), sorting.inputs(&(linear * 2.0))],
         half_constant: sorting.inputs(&half.input_integrals[0]),
@@ -157,7 +157,7 @@ impl<'a> Sorting<'a> {
         }
     }
 
-    fn transition<T: Real>(&self, flow: &exponential::Flow) -> Transition<T> {
+    fn transition<T: Real>(&self, flow: &exponential::Flow) -> TransitionTable<T> {
         let size = self.dynamics.coordinates();
         let full = &flow.transition;
         // Effect on a deviation: effect of a planet on itself minus the effect of another planet.
@@ -165,7 +165,7 @@ impl<'a> Sorting<'a> {
             full[(size * row, size * column)] - full[(size * row, size * column + 1)]
         });
         let torques = self.dynamics.mesh_gain.ncols();
-        Transition {
+        TransitionTable {
             in_phase: narrow(&(&self.average * full * &self.spread)),
             deviation: Block(deviation.map(T::from_f64)),
             torques: narrow(&(&self.average * flow.input_integrals[0].columns(torques, 3))),

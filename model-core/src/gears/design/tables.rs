@@ -14,7 +14,7 @@ use crate::gears::mechanics::Mechanics;
 use crate::gears::mesh_phases::MeshPhasing;
 use crate::gears::scales::Scales;
 use crate::gears::stiffness_series::StiffnessSeries;
-use crate::gears::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Units};
+use crate::gears::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, StageTable, Tables, UnitTable};
 use crate::numbers::Real;
 use parameters::{DeadZone, JointParameters, MAX_HARMONICS, MESH_KINDS, MeshKind};
 
@@ -100,7 +100,7 @@ pub fn design_scheme<T: Real, const N: usize>(
             damping: real(scales.damping(parameters.damping_coefficient(kind))),
         }),
         meshes: MESH_KINDS.map(|kind| array::from_fn(|i| mesh(parameters, &scales, kind, i))),
-        stage: Stage {
+        stage: StageTable {
             rate: real(1.0 / substep),
             square_sixth: real(substep * substep / 6.0),
             mobility: mobility(&dynamics, substep * substep / 6.0, 1.0 / substep),
@@ -113,7 +113,7 @@ pub fn design_scheme<T: Real, const N: usize>(
     Ok(tables)
 }
 
-fn units<T: Real>(parameters: &JointParameters, scales: &Scales, tick_rate: u32) -> Units<T> {
+fn units<T: Real>(parameters: &JointParameters, scales: &Scales, tick_rate: u32) -> UnitTable<T> {
     let real = T::from_f64;
     let masses = MovingMasses::new(parameters);
     let (sun_lever, lever) = (parameters.geometry.sun_base_radius, parameters.geometry.carrier_base_radius());
@@ -125,7 +125,7 @@ fn units<T: Real>(parameters: &JointParameters, scales: &Scales, tick_rate: u32)
     let motor = [2.0 * masses.planet / rigid, -outer / rigid, 2.0 * link / rigid];
     // u_l = u_s / 2 - gap / 2 - wind-up.
     let output = [0.5 * motor[0], 0.5 * (motor[1] - 1.0), 0.5 * motor[2] - 1.0];
-    Units {
+    UnitTable {
         drive: real(1.0 / (sun_lever * masses.sun * scales.acceleration())),
         load_on_carrier: real(if masses.link.is_some() { 0.0 } else { load_on(masses.carrier) }),
         load_on_link: real(masses.link.map_or(0.0, load_on)),

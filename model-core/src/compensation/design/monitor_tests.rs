@@ -1,10 +1,10 @@
 //! Tests of the loop monitor with designed tables.
 
 use crate::compensation::design::{compensation_settings, design_compensation};
+use crate::compensation::loop_state::LoopState;
+use crate::compensation::monitor::{LoopMonitor, MonitorInput};
 use crate::compensation::set_point::{CommandRef, Motion};
-use crate::compensation::situation::Situation;
 use crate::compensation::tables::CompensationTables;
-use crate::compensation::watch::{Watch, Watched};
 use crate::gears::Flank;
 use crate::observer::Estimates;
 
@@ -14,14 +14,14 @@ pub(super) fn tables() -> CompensationTables<f32> {
     design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0)).expect("tables")
 }
 
-/// Returns a situation with an error of a part of half the lost motion.
-fn situation(tables: &CompensationTables<f32>, part: f32) -> Situation<f32> {
+/// Returns a state with an error of a part of half the lost motion.
+fn state(tables: &CompensationTables<f32>, part: f32) -> LoopState<f32> {
     let mut estimates = Estimates::default();
     estimates.half_backlash.value = 40e-6;
-    let mut situation =
-        Situation::new(tables, &estimates, 0.0, CommandRef::Position { now: &Motion::default(), ahead: None });
-    situation.error = part * situation.half;
-    situation
+    let mut state =
+        LoopState::new(tables, &estimates, 0.0, CommandRef::Position { now: &Motion::default(), ahead: None });
+    state.error = part * state.half_gap;
+    state
 }
 
 /// Control periods between two judgements.
@@ -31,9 +31,9 @@ const TURN: usize = 3;
 const GROWS: u32 = 500;
 
 /// Returns a monitor after a second of a good loop: nothing is granted for the takeover.
-fn settled(tables: &CompensationTables<f32>) -> Watch<f32> {
-    let (good, mut watch) = (situation(tables, 0.0), Watch::new(tables));
-    let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+fn settled(tables: &CompensationTables<f32>) -> LoopMonitor<f32> {
+    let (good, mut watch) = (state(tables, 0.0), LoopMonitor::new(tables));
+    let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
     (0..10_000).step_by(TURN).for_each(|_| watch.step(tables, &good, &watched, Some(Flank::Drive)));
     watch
 }
@@ -45,10 +45,10 @@ fn trips_after(part: f32, dwell: u32, planned: impl Fn(Flank) -> f32) -> Option<
     let mut watch = settled(&tables);
     (0..100_000).step_by(TURN).find(|&period: &u32| {
         let flank = if (period / dwell).is_multiple_of(2) { Flank::Drive } else { Flank::Back };
-        let watched = Watched { planned: planned(flank), load: 0.0, has_error: true, is_thrown: false };
-        let situation = situation(&tables, part * (period.min(GROWS) as f32 / GROWS as f32));
-        watch.step(&tables, &situation, &watched, Some(flank));
-        watch.is_away()
+        let watched = MonitorInput { planned: planned(flank), load: 0.0, has_error: true, external_impact: false };
+        let state = state(&tables, part * (period.min(GROWS) as f32 / GROWS as f32));
+        watch.step(&tables, &state, &watched, Some(flank));
+        watch.is_tripped()
     })
 }
 
@@ -65,25 +65,29 @@ fn unexplained_changes_trip_in_half_a_second() {
 }
 
 #[test]
-fn a_load_changes_flanks_eight_times_a_second_at_most() {
+fn load_changes_flanks_eight_times_a_second() {
     // Two changes in 0.2 s, like a gait, and forty per second, like a payload mode that is measured as a load.
     let [gait, mode] = [1000, 250].map(|dwell| {
-        let (tables, good) = (tables(), situation(&tables(), 0.9));
+        let (tables, good) = (tables(), state(&tables(), 0.9));
         let mut watch = settled(&tables);
         (0..100_000).step_by(TURN).find(|&period: &u32| {
             let flank = if (period / dwell).is_multiple_of(2) { Flank::Drive } else { Flank::Back };
             // Large enough to pass the smoothing of the load.
-            let watched =
-                Watched { planned: 0.0, load: 100.0 * flank.sign::<f32>(), has_error: true, is_thrown: false };
+            let watched = MonitorInput {
+                planned: 0.0,
+                load: 100.0 * flank.sign::<f32>(),
+                has_error: true,
+                external_impact: false,
+            };
             watch.step(&tables, &good, &watched, Some(flank));
-            watch.is_away()
+            watch.is_tripped()
         })
     });
     assert!(gait.is_none() && mode.is_some_and(|periods| periods < 20_000), "{gait:?} {mode:?}");
 }
 
 #[test]
-fn small_error_bears_a_drift_from_flank_to_flank() {
+fn small_error_permits_a_drift_between_flanks() {
     // Fifteen changes per second.
     let [calm, rough] = [0.1, 0.9].map(|part| trips_after(part, 667, |_| 0.0));
     assert!(calm.is_none() && rough.is_some_and(|periods| periods < 6000), "{calm:?} {rough:?}");
@@ -96,32 +100,32 @@ fn error_of_plain_control_does_not_trip() {
 }
 
 #[test]
-fn error_that_the_loop_has_found_does_not_trip() {
-    let (tables, trips) = (tables(), |watch: &mut Watch<f32>| {
+fn error_found_at_takeover_does_not_trip() {
+    let (tables, trips) = (tables(), |watch: &mut LoopMonitor<f32>| {
         let tables = tables();
-        let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+        let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
         (0..10_000).step_by(TURN).any(|period| {
             // Ten times half the lost motion, which plain control reduces in a few time constants.
-            let situation = situation(&tables, 10.0 * (-0.006 * period as f32).exp());
-            watch.step(&tables, &situation, &watched, Some(Flank::Drive));
-            watch.is_away()
+            let state = state(&tables, 10.0 * (-0.006 * period as f32).exp());
+            watch.step(&tables, &state, &watched, Some(Flank::Drive));
+            watch.is_tripped()
         })
     });
-    assert!(!trips(&mut Watch::new(&tables)), "found when it was switched on");
+    assert!(!trips(&mut LoopMonitor::new(&tables)), "found when it was switched on");
     assert!(!trips(&mut settled(&tables)), "a jump of the set-point");
 }
 
 #[test]
-fn time_away_grows_and_is_forgiven() {
+fn retry_time_grows_and_returns() {
     let tables = tables();
-    let good = situation(&tables, 0.0);
-    let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+    let good = state(&tables, 0.0);
+    let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
     let mut watch = settled(&tables);
-    let mut step = |situation: &Situation<f32>| {
-        watch.step(&tables, situation, &watched, Some(Flank::Drive));
-        watch.is_away()
+    let mut step = |state: &LoopState<f32>| {
+        watch.step(&tables, state, &watched, Some(Flank::Drive));
+        watch.is_tripped()
     };
-    let bad = |period: u32| situation(&tables, 4.0 * (period.min(GROWS) as f32 / GROWS as f32));
+    let bad = |period: u32| state(&tables, 4.0 * (period.min(GROWS) as f32 / GROWS as f32));
     let mut seconds_away = || {
         let trips = (0..2000).step_by(TURN).find(|&period| step(&bad(period))).expect("worse than plain control");
         let periods = (0..2_000_000).step_by(TURN).find(|_| !step(&good)).expect("the compensation tries again");
@@ -141,15 +145,15 @@ fn time_away_grows_and_is_forgiven() {
 }
 
 #[test]
-fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
+fn error_beyond_plain_control_trips_after_a_trip() {
     let tables = tables();
-    let watched = Watched { planned: 0.0, load: 0.0, has_error: true, is_thrown: false };
+    let watched = MonitorInput { planned: 0.0, load: 0.0, has_error: true, external_impact: false };
     // If plain control recently left an error of twice half the lost motion, no smaller error trips; if not, a smaller
     // error does.
     let trips_at = |left: f32, part: f32| {
-        let acts = |watch: &mut Watch<f32>, part: f32| {
-            watch.step(&tables, &situation(&tables, part), &watched, Some(Flank::Drive));
-            watch.is_away()
+        let acts = |watch: &mut LoopMonitor<f32>, part: f32| {
+            watch.step(&tables, &state(&tables, part), &watched, Some(Flank::Drive));
+            watch.is_tripped()
         };
         let mut watch = settled(&tables);
         assert!(
@@ -157,8 +161,8 @@ fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
             "at first"
         );
         assert!((0..10_000).any(|_| acts(&mut watch, 4.0)));
-        while watch.is_away() {
-            watch.step(&tables, &situation(&tables, left), &watched, None);
+        while watch.is_tripped() {
+            watch.step(&tables, &state(&tables, left), &watched, None);
         }
         // The error found at takeover is granted first; the grant decays.
         assert!((0..4000).step_by(TURN).all(|_| !acts(&mut watch, 0.0)));
@@ -170,22 +174,22 @@ fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
 }
 
 #[test]
-fn numbers_that_are_none_pass_through_nothing() {
+fn load_that_is_no_number_leaves_the_monitor() {
     let tables = tables();
-    let (situation, mut watch) = (situation(&tables, 0.1), Watch::new(&tables));
+    let (state, mut watch) = (state(&tables, 0.1), LoopMonitor::new(&tables));
     watch.step(
         &tables,
-        &situation,
-        &Watched { planned: 1.0, load: f32::NAN, has_error: true, is_thrown: false },
+        &state,
+        &MonitorInput { planned: 1.0, load: f32::NAN, has_error: true, external_impact: false },
         Some(Flank::Drive),
     );
-    let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
-    (0..1000).step_by(TURN).for_each(|_| watch.step(&tables, &situation, &watched, Some(Flank::Drive)));
-    assert!(!watch.is_away());
+    let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
+    (0..1000).step_by(TURN).for_each(|_| watch.step(&tables, &state, &watched, Some(Flank::Drive)));
+    assert!(!watch.is_tripped());
     // The monitor still judges.
-    let bad = self::situation(&tables, 9.0);
+    let bad = self::state(&tables, 9.0);
     assert!((0..100_000).step_by(TURN).any(|_| {
         watch.step(&tables, &bad, &watched, Some(Flank::Drive));
-        watch.is_away()
+        watch.is_tripped()
     }));
 }

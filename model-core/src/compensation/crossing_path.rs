@@ -1,25 +1,32 @@
-//! Path of a crossing (K8): a ramp to a steady speed, steady speed, a ramp to the landing speed. Loose planets are
-//! struck anywhere on the way, so that the highest speed determines the force: a path with a higher peak speed would
-//! strike harder without being faster.
+//! Path of a crossing: a ramp to a steady speed, steady speed, a ramp to the landing speed. Loose planets are struck
+//! anywhere on the way, so that the highest speed determines the force: a path with a higher peak speed would strike
+//! harder without being faster.
+//!
+//! ```text
+//! (K8)  v_x = (end - start - ramp/2 (start speed + end speed))/(T_c - ramp)
+//!       on a ramp, with s = time/ramp:   speed = start speed + (v_x - start speed) (3 s^2 - 2 s^3)
+//! ```
+//!
+//! Symbols: v_x = `steady`, T_c = `crossing.duration`, ramp = `crossing.ramp`.
 
-use super::crossing::Crossing;
+use super::crossing_timing::CrossingTiming;
 use crate::numbers::Real;
 
 /// Path over time.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Path<T: Real> {
+pub(super) struct CrossingPath<T: Real> {
     start: [T; 2],
     end: [T; 2],
     /// Steady speed between the ramps [rad/s].
     steady: T,
-    crossing: Crossing<T>,
+    crossing: CrossingTiming<T>,
     inverse_ramp: T,
 }
 
-impl<T: Real> Path<T> {
+impl<T: Real> CrossingPath<T> {
     /// Creates a path from position and rate to position and rate.
-    pub fn new(start: [T; 2], end: [T; 2], crossing: Crossing<T>) -> Self {
-        let Crossing { duration, ramp } = crossing;
+    pub fn new(start: [T; 2], end: [T; 2], crossing: CrossingTiming<T>) -> Self {
+        let CrossingTiming { duration, ramp } = crossing;
         let long = duration - ramp;
         let at_full = end[0] - start[0] - T::HALF * ramp * (start[1] + end[1]);
         let steady = if long > T::ZERO { at_full / long } else { T::ZERO };
@@ -35,7 +42,7 @@ impl<T: Real> Path<T> {
     /// Position, rate and acceleration at a time since the start; outside the path, extrapolated at the rate of its
     /// ends.
     pub fn at(&self, time: T) -> [T; 3] {
-        let Crossing { duration, ramp } = self.crossing;
+        let CrossingTiming { duration, ramp } = self.crossing;
         let left = duration - time;
         let [from, to] = [self.start, self.end];
         if left <= T::ZERO {
@@ -72,14 +79,14 @@ impl<T: Real> Path<T> {
 mod tests {
     use super::*;
 
-    const CROSSING: Crossing<f64> = Crossing { duration: 6e-3, ramp: 1.5e-3 };
+    const CROSSING: CrossingTiming<f64> = CrossingTiming { duration: 6e-3, ramp: 1.5e-3 };
 
-    fn path() -> Path<f64> {
-        Path::new([0.1, 0.3], [0.104, 0.2], CROSSING)
+    fn path() -> CrossingPath<f64> {
+        CrossingPath::new([0.1, 0.3], [0.104, 0.2], CROSSING)
     }
 
     #[test]
-    fn a_path_leads_from_one_end_to_the_other() {
+    fn path_leads_from_end_to_end() {
         for (time, place, rate) in [(0.0, 0.1, 0.3), (6e-3, 0.104, 0.2)] {
             for beside in [-1e-9, 1e-9] {
                 let [at, speed, acceleration] = path().at(time + beside);
@@ -101,8 +108,8 @@ mod tests {
     }
 
     #[test]
-    fn no_speed_on_the_way_is_higher_than_the_steady_one() {
-        let rest = Path::new([0.0, 0.0], [3.78e-3, 0.0], CROSSING);
+    fn path_never_exceeds_the_steady_speed() {
+        let rest = CrossingPath::new([0.0, 0.0], [3.78e-3, 0.0], CROSSING);
         let highest = (0..600).map(|part| rest.at(f64::from(part) * 1e-5)[1]).fold(0.0, f64::max);
         assert!((highest - 3.78e-3 / (CROSSING.duration - CROSSING.ramp)).abs() < 1e-12);
     }

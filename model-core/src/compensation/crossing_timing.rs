@@ -5,7 +5,8 @@
 //!       ramp = max(q v_x, 4 T_r), or max(sqrt(2 h q), 4 T_r) if v_x is not reached
 //! ```
 //!
-//! Symbols: T_c = `duration`, M_x = `force`, 1/Z = `strike_speed_per_torque`, q = `ramp_per_speed`, 4 T_r = `shortest_ramp`.
+//! Symbols: T_c = `duration`, M_x = `force`, 1/Z = `strike_speed_per_torque`, q = `ramp_per_speed`, 4 T_r =
+//! `shortest_ramp`.
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
@@ -13,14 +14,14 @@ use crate::numbers::arithmetic::clamp;
 
 /// Times of a crossing.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Crossing<T: Real> {
+pub(crate) struct CrossingTiming<T: Real> {
     /// Duration of the path [s].
     pub duration: T,
     /// Duration of each of the two ramps, to and from the steady speed [s]; at most half of `duration`.
     pub ramp: T,
 }
 
-impl<T: Real> Crossing<T> {
+impl<T: Real> CrossingTiming<T> {
     /// Crossing of a gap of twice `half`. The force on planets struck on the way is at most a share of the rated force
     /// or, if larger, `demand`, up to a share of the peak torque. Ramps are as steep as the motor's torque and the
     /// delays of the loop permit.
@@ -46,5 +47,58 @@ impl<T: Real> Crossing<T> {
         let ramp = if ramp < shortest_ramp { shortest_ramp } else { ramp };
         let (flat, twice) = (ramp + along, ramp + ramp);
         Self { duration: if flat < twice { twice } else { flat }, ramp }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compensation::test_bench::tables;
+
+    #[test]
+    fn wide_gap_has_a_steady_speed() {
+        let timing = CrossingTiming::at(0.2, 20e-3, 0.15, 8e-3);
+        assert!((timing.ramp - 30e-3).abs() < 1e-12 && (timing.duration - 130e-3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn narrow_gap_is_two_ramps() {
+        let timing = CrossingTiming::at(0.6, 4e-3, 0.15, 8e-3);
+        assert!((timing.ramp - f64::sqrt(0.15 * 4e-3)).abs() < 1e-6);
+        assert_eq!(timing.duration, 2.0 * timing.ramp);
+    }
+
+    #[test]
+    fn ramp_is_never_shorter_than_the_delays_allow() {
+        let timing = CrossingTiming::at(0.2, 1e-6, 0.15, 8e-3);
+        assert_eq!((timing.ramp, timing.duration), (8e-3, 16e-3));
+    }
+
+    #[test]
+    fn small_demand_strikes_with_the_least_force() {
+        let at = |demand| CrossingTiming::new(&tables(), 4e-3, demand).duration;
+        assert_eq!([at(0.0), at(-1.9)], [at(2.0); 2]);
+    }
+
+    #[test]
+    fn large_demand_crosses_faster_up_to_the_hardest_strike() {
+        let at = |demand| CrossingTiming::new(&tables(), 20e-3, demand).duration;
+        let tables = tables();
+        assert!(at(3.0) <= at(2.0));
+        assert_eq!(at(6.0), at(60.0));
+        assert!(at(6.0) <= tables.crossing.longest);
+    }
+
+    #[test]
+    fn duration_is_bounded() {
+        let timing = CrossingTiming::new(&tables(), 1.0, 0.0);
+        assert_eq!((timing.duration, timing.ramp), (60e-3, 30e-3));
+    }
+
+    #[test]
+    fn joint_without_a_strike_speed_takes_the_longest_time() {
+        let mut tables = tables();
+        tables.crossing.strike_speed_per_torque = 0.0;
+        assert_eq!(CrossingTiming::new(&tables, 2e-3, 5.0).duration, 60e-3);
     }
 }

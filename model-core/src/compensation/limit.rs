@@ -46,8 +46,12 @@ pub(super) fn limit_mesh_torque<T: Real>(
     let mesh_torque = mesh_torque(tables, load.free_load_torque(), useful);
     let side = if mesh_torque < T::ZERO { -T::ONE } else { T::ONE };
     let static_limit = static_limit(tables, state, side, limit);
-    let asked = side * mesh_torque;
-    if asked > static_limit { useful - side * tables.body.inverse_load_share * (asked - static_limit) } else { useful }
+    let requested = side * mesh_torque;
+    if requested > static_limit {
+        useful - side * tables.body.inverse_load_share * (requested - static_limit)
+    } else {
+        useful
+    }
 }
 
 /// Static torque that the law may ask of a flank, between half of `limit` and `limit`. Less than half would brake the

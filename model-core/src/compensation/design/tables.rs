@@ -41,8 +41,6 @@ struct Design<'given> {
     /// Damper of the loop and its part on the motor, D and D_m [N m s/rad].
     damping: f64,
     motor_damping: f64,
-    /// Rated torque of the output [N m].
-    rated: f64,
     /// Peak torque of the output [N m].
     peak: f64,
     /// Torque through the teeth that the law may ask for, P [N m].
@@ -114,7 +112,6 @@ impl<'given> Design<'given> {
             reaction,
             damping,
             motor_damping: motor_damping_bound(&body, damping, reaction),
-            rated,
             peak,
             most_passed: LIMITS.teeth_per_peak * peak,
             strike_torque,

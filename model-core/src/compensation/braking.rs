@@ -20,7 +20,7 @@
 //! sine, and lag although the torque suffices.
 //!
 //! Symbols: e = `error`, w = `rate`, A = `deceleration`, A J = `torques`, e_0 = `knee`, u = `speed`,
-//! b = `set_point_brakes`, v = `closing`, a' = `acceleration` of the [`Approach`].
+//! b = `set_point_deceleration`, v = `closing`, a' = `acceleration` of the [`Approach`].
 
 use super::load::LoadModel;
 use super::loop_state::LoopState;
@@ -76,9 +76,10 @@ impl<T: Real> BrakingLimit<T> {
     /// Computes braking torques and inertia from the estimates.
     pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, state: &LoopState<T>) -> Self {
         let [bias, motor_friction] = state.losses;
-        let [driven, still] = [load.gravity_torque() + bias, tables.limits.motor + load.friction() + motor_friction];
+        let [load_torque, resisting] =
+            [load.gravity_torque() + bias, tables.limits.motor + load.friction() + motor_friction];
         let least = Self::THRESHOLDS.min_torque_share * tables.limits.motor;
-        let torques = [still - driven, still + driven]
+        let torques = [resisting - load_torque, resisting + load_torque]
             .map(|torque| tables.limits.braking * if torque > least { torque } else { least });
         Self { inertia: state.inertia, torques, rate: tables.law.rate }
     }
@@ -112,10 +113,10 @@ impl<T: Real> BrakingLimit<T> {
         let [error, speed, acceleration, ahead] =
             [error, set_point.speed, set_point.acceleration, set_point.ahead].map(|value| side * value);
         let hardest = if ahead < acceleration { ahead } else { acceleration };
-        let set_point_brakes = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
+        let set_point_deceleration = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
         // The link cannot brake beside a set-point that brakes harder.
-        let unmatched = self.inertia * set_point_brakes >= against;
-        if self.linear_law_applies(error, against, back, set_point_brakes) {
+        let unmatched = self.inertia * set_point_deceleration >= against;
+        if self.linear_law_applies(error, against, back, set_point_deceleration) {
             return None;
         }
         let deceleration = against / self.inertia;
@@ -124,10 +125,10 @@ impl<T: Real> BrakingLimit<T> {
         } else if unmatched {
             Approach { closing: self.rate * error, acceleration }
         } else {
-            self.towards(deceleration - set_point_brakes, error, acceleration)
+            self.towards(deceleration - set_point_deceleration, error, acceleration)
         };
-        let approach = if set_point_brakes > T::ZERO {
-            self.nearer_of_place_and_rest(beside, deceleration, error, speed, set_point_brakes)
+        let approach = if set_point_deceleration > T::ZERO {
+            self.nearer_of_place_and_rest(beside, deceleration, error, speed, set_point_deceleration)
         } else {
             beside
         };
@@ -136,13 +137,13 @@ impl<T: Real> BrakingLimit<T> {
 
     /// True if the linear law needs no more torque than braking leaves, or the error is below e_0/4. `against` brakes
     /// the link in the direction of the set-point's motion, `back` on its way back [N m].
-    fn linear_law_applies(&self, error: T, against: T, back: T, set_point_brakes: T) -> bool {
-        let unmatched = self.inertia * set_point_brakes >= against;
+    fn linear_law_applies(&self, error: T, against: T, back: T, set_point_deceleration: T) -> bool {
+        let unmatched = self.inertia * set_point_deceleration >= against;
         let needed = self.inertia * self.rate * self.rate * error;
         let (needed, available, left) = if error < T::ZERO {
             (-needed, back, back)
         } else {
-            (needed, against, against - self.inertia * set_point_brakes)
+            (needed, against, against - self.inertia * set_point_deceleration)
         };
         needed <= Self::THRESHOLDS.linear_error_share * available || needed <= left && !unmatched
     }
@@ -182,13 +183,13 @@ impl<T: Real> BrakingLimit<T> {
         deceleration: T,
         error: T,
         speed: T,
-        set_point_brakes: T,
+        set_point_deceleration: T,
     ) -> Approach<T> {
-        let time_to_rest = speed / set_point_brakes;
+        let time_to_rest = speed / set_point_deceleration;
         let to_rest = self.towards(deceleration, error + T::HALF * speed * time_to_rest, T::ZERO);
         let to_rest = Approach { closing: to_rest.closing - speed, ..to_rest };
-        let rests_first = if deceleration > set_point_brakes {
-            error > T::HALF * (deceleration - set_point_brakes) * time_to_rest * time_to_rest
+        let rests_first = if deceleration > set_point_deceleration {
+            error > T::HALF * (deceleration - set_point_deceleration) * time_to_rest * time_to_rest
         } else {
             to_rest.closing < beside.closing
         };
@@ -199,14 +200,14 @@ impl<T: Real> BrakingLimit<T> {
     /// forward the acceleration of the place.
     fn towards(&self, braking: T, way: T, acceleration: T) -> Approach<T> {
         let knee = braking / (self.rate * self.rate);
-        let size = way.abs();
-        if size <= knee {
+        let distance = way.abs();
+        if distance <= knee {
             return Approach { closing: self.rate * way, acceleration };
         }
-        let speed = (T::TWO * braking * (size - T::HALF * knee)).square_root();
+        let speed = (T::TWO * braking * (distance - T::HALF * knee)).square_root();
         let (speed, braking) = if way < T::ZERO { (-speed, braking) } else { (speed, -braking) };
-        let linear = knee / size;
-        Approach { closing: speed, acceleration: acceleration + (T::ONE - linear) * braking }
+        let linear_share = knee / distance;
+        Approach { closing: speed, acceleration: acceleration + (T::ONE - linear_share) * braking }
     }
 }
 

@@ -112,12 +112,12 @@ impl<T: Real> DemandEstimator<T> {
     /// Plans the demand of a motion. Returns the demand over the torque that surely presses a flank: above 1 it presses
     /// the drive flank, below -1 the back flank. `None` if the motion is not finite.
     pub fn plan(&mut self, tables: &CompensationTables<T>, now: &Motion<T>) -> Option<T> {
-        let [of_motor, _] = tables.load.frictions;
-        let alone = tables.body.motor_inertia * now.acceleration;
-        let designed = alone + tables.body.load_inertia * now.acceleration;
+        let [motor_friction, _] = tables.load.frictions;
+        let motor_alone = tables.body.motor_inertia * now.acceleration;
+        let designed = motor_alone + tables.body.load_inertia * now.acceleration;
         let direction = friction_direction(tables, now.speed);
-        let friction_torque = clamp(self.load.friction - of_motor, T::ZERO, self.load.friction);
-        let demand = self.inertia * designed - alone + friction_torque * direction + self.load.gravity_torque;
+        let friction_torque = clamp(self.load.friction - motor_friction, T::ZERO, self.load.friction);
+        let demand = self.inertia * designed - motor_alone + friction_torque * direction + self.load.gravity_torque;
         if !demand.is_finite() {
             (self.torque, self.friction_torque) = (T::ZERO, T::ZERO);
             return None;
@@ -128,8 +128,8 @@ impl<T: Real> DemandEstimator<T> {
         let most = T::TWO * tables.limits.motor;
         self.torque = clamp(demand, -most, most);
         self.planned =
-            (designed.abs() <= most).then_some(PlannedTorque { inertia_torques: [designed, alone], direction });
-        let held = of_motor * (T::ONE - direction.abs());
+            (designed.abs() <= most).then_some(PlannedTorque { inertia_torques: [designed, motor_alone], direction });
+        let held = motor_friction * (T::ONE - direction.abs());
         let deviation = self.load.variance(direction).square_root();
         Some(self.torque / (tables.watch.least_demand + held + deviation))
     }
@@ -138,7 +138,9 @@ impl<T: Real> DemandEstimator<T> {
     // Not inlined: fewer instructions per tick on a Cortex-M4F, because the controlling law keeps its registers.
     #[inline(never)]
     pub fn estimate(&mut self, tables: &CompensationTables<T>, torque: T) {
-        let Some(PlannedTorque { inertia_torques: [designed, alone], direction }) = self.planned.take() else { return };
+        let Some(PlannedTorque { inertia_torques: [designed, motor_alone], direction }) = self.planned.take() else {
+            return;
+        };
         let limit = tables.limits.motor;
         let time = SlowTask::periods::<T>() * tables.clock.period;
         let braking_torque = torque - self.inertia * designed;
@@ -147,19 +149,19 @@ impl<T: Real> DemandEstimator<T> {
             return;
         }
         self.transmitted +=
-            SlowTask::periods::<T>() * tables.law.back_calculation * (torque - alone - self.transmitted);
+            SlowTask::periods::<T>() * tables.law.back_calculation * (torque - motor_alone - self.transmitted);
         let share = Self::THRESHOLDS.inertia_rate * time;
-        let faded = self.peak_square - T::HALF * share * self.peak_square;
-        self.peak_square = if square > faded { square } else { faded };
-        let least = Self::THRESHOLDS.inertia_min_torque * limit;
-        if self.peak_square > least * least {
+        let decayed = self.peak_square - T::HALF * share * self.peak_square;
+        self.peak_square = if square > decayed { square } else { decayed };
+        let min_torque = Self::THRESHOLDS.inertia_min_torque * limit;
+        if self.peak_square > min_torque * min_torque {
             let excess = braking_torque - self.load.torque(direction);
             // The link inertia stays within a quarter to four times the designed value, as everywhere.
-            let by = T::TWO * share * ((excess * designed) / self.peak_square);
+            let correction = T::TWO * share * (excess * designed / self.peak_square);
             let link = tables.body.load_share;
             let [lightest, heaviest] =
                 EstimateBounds::<T>::VALUES.link_inertia_ratio.map(|ratio| T::ONE + link * (ratio - T::ONE));
-            self.inertia = clamp(self.inertia + by, lightest, heaviest);
+            self.inertia = clamp(self.inertia + correction, lightest, heaviest);
         }
         // At rest friction may hold any part of the torque.
         let (unexplained, held) =

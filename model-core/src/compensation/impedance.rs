@@ -38,6 +38,7 @@ impl<T: Real> ImpedanceLaw<T> {
         *self = Self::new();
     }
 
+    /// Computes the demand of a set-point.
     pub fn demand(
         &mut self,
         tables: &CompensationTables<T>,
@@ -49,23 +50,23 @@ impl<T: Real> ImpedanceLaw<T> {
         // Friction and cogging of the motor are not compensated: the law is that of a joint without a gap, not without
         // losses. The swing of motor against link stays as well, except the part caused by the loop's delays. Only the
         // cogging's difference to a joint without a gap is removed, because the motor stands elsewhere.
-        let law = clamp(spring, -tables.limits.motor, tables.limits.motor)
+        let law_torque = clamp(spring, -tables.limits.motor, tables.limits.motor)
             + point.damping * (point.speed - state.motor_speed)
             + tables.law.impedance_damping * state.damping_torque(tables)
             - state.cogging_difference(tables);
-        let free = load.gravity_torque() + load.friction_torque();
+        let load_torque = load.gravity_torque() + load.friction_torque();
         self.stream.step(tables, point);
         let extrapolation_time = self.stream.extrapolation_time(tables);
         let error = state.error + point.speed * extrapolation_time;
         let torque = point.torque + self.stream.torque_rate() * extrapolation_time;
-        let asked = point.stiffness * error + point.damping * state.error_rate + torque;
-        let demand_now = mesh_torque(tables, free, asked);
+        let requested = point.stiffness * error + point.damping * state.error_rate + torque;
+        let demand_now = mesh_torque(tables, load_torque, requested);
         let rate = tables.body.load_share * (point.stiffness * state.error_rate + self.stream.torque_rate());
         let demand = |time: T| demand_now + time * rate;
         let rests = point.speed == T::ZERO && self.stream.rests(tables);
-        let likely = self.start.step(tables, state, self.stream.direction(), rests);
-        let expected_start_torque = sign::<T>(likely) * load.start_torque(tables);
-        ControlDemand { expected_start_torque, ..ControlDemand::new(tables, load, state, law, demand, true) }
+        let flank = self.start.step(tables, state, self.stream.direction(), rests);
+        let expected_start_torque = sign::<T>(flank) * load.start_torque(tables);
+        ControlDemand { expected_start_torque, ..ControlDemand::new(tables, load, state, law_torque, demand, true) }
     }
 }
 

@@ -110,7 +110,7 @@ impl<T: Real> BacklashInverse<T> {
         self.pressed = if presses { longer } else { T::ZERO };
         if self.pressed > Self::THRESHOLDS.settling_time {
             self.has_settled = true;
-            let edge = state.motor_lead - state.flank_shift - (self.demand.torque() / state.stiffness);
+            let edge = state.motor_lead - state.flank_shift - self.demand.torque() / state.stiffness;
             let [drive, back] = &mut self.edges;
             let known = if self.share > T::ZERO { drive } else { back };
             let before = known.unwrap_or(edge);

@@ -46,8 +46,12 @@ pub(super) fn limit_mesh_torque<T: Real>(
     let mesh_torque = mesh_torque(tables, load.free_load_torque(), useful);
     let side = if mesh_torque < T::ZERO { -T::ONE } else { T::ONE };
     let static_limit = static_limit(tables, state, side, limit);
-    let asked = side * mesh_torque;
-    if asked > static_limit { useful - side * tables.body.inverse_load_share * (asked - static_limit) } else { useful }
+    let requested = side * mesh_torque;
+    if requested > static_limit {
+        useful - side * tables.body.inverse_load_share * (requested - static_limit)
+    } else {
+        useful
+    }
 }
 
 /// Static torque that the law may ask of a flank, between half of `limit` and `limit`. Less than half would brake the
@@ -68,7 +72,7 @@ fn static_limit<T: Real>(tables: &CompensationTables<T>, state: &LoopState<T>, s
     let swing =
         if closing > T::ZERO { state.stiffness * tables.body.reduced_inertia * closing * closing } else { T::ZERO };
     let least = tables.limits.least_room;
-    let reserve = room.abs() + (swing / (if room > least { room } else { least }));
+    let reserve = room.abs() + swing / (if room > least { room } else { least });
     clamp(limit - T::HALF * reserve, T::HALF * limit, limit)
 }
 

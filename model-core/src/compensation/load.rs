@@ -223,9 +223,9 @@ impl<T: Real> LoadModel<T> {
 
     /// Estimates the speed of the link from the set-point, which has no noise, and the smoothed speed error.
     fn estimate_speed(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>) {
-        let asked = state.link_speed + state.error_rate;
+        let set_point_speed = state.link_speed + state.error_rate;
         let speed_error = self.speed_error + tables.switching.smoothing * (state.error_rate - self.speed_error);
-        let speed = tables.load.friction_slope * (asked - speed_error);
+        let speed = tables.load.friction_slope * (set_point_speed - speed_error);
         if speed.is_finite() {
             (self.speed_error, self.speed) = (speed_error, speed);
         }

@@ -53,24 +53,24 @@ impl<T: Real> PlainControl<T> {
         // does not sag.
         self.integral.add(tables, tables.law.back_calculation * load.gravity_torque());
         // The integral then holds the load.
-        let drag = load.planned_friction(tables, now.speed);
-        let demand = tables.body.load_inertia * now.acceleration + self.integral.torque() + drag;
+        let friction = load.planned_friction(tables, now.speed);
+        let demand = tables.body.load_inertia * now.acceleration + self.integral.torque() + friction;
         let share = clamp(tables.switching.inverse_step * demand, -T::ONE, T::ONE);
         self.expected_flank = state.half_gap_known.then_some(share);
         // A link that is pushed hard closes the gap by itself: with all damping on the motor the teeth meet too hard,
         // without damping on the link too late. The blow is not fed forward, because it ends before the motor can
         // answer.
-        let (on_motor, on_link, known) = if load.external_impact(tables) {
+        let (on_motor, on_link, load_torque) = if load.external_impact(tables) {
             let on_motor = swinging_motor_damping(tables.law.motor_damping);
             (on_motor, Self::THRESHOLDS.pushed_link_damping * (tables.law.damping - on_motor), T::ZERO)
         } else {
-            (tables.law.damping, T::ZERO, load.gravity_torque() + drag)
+            (tables.law.damping, T::ZERO, load.gravity_torque() + friction)
         };
         let torque = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             - tables.law.position * self.position_error(state)
             + on_motor * (now.speed - state.motor_speed)
             + on_link * state.error_rate
-            + known
+            + load_torque
             + self.integral.torque();
         self.integral.detect_swing(tables, torque, T::ONE);
         torque
@@ -88,7 +88,7 @@ impl<T: Real> PlainControl<T> {
     /// seen, other laws control: the integral decays to be ready, and the flank in use gives the distance of motor and
     /// link.
     pub fn update(&mut self, tables: &CompensationTables<T>, state: &LoopState<T>, cut: T) {
-        let slowly = Self::THRESHOLDS.lead_smoothing * tables.law.back_calculation;
+        let slow = Self::THRESHOLDS.lead_smoothing * tables.law.back_calculation;
         let (towards, part) = if state.link_seen {
             self.expected_flank = None;
             self.integral.decay_toward(tables, T::ZERO);
@@ -97,13 +97,13 @@ impl<T: Real> PlainControl<T> {
                 > Self::THRESHOLDS.pushed_link_travel * tables.law.back_calculation * state.half_gap;
             let lead_unknown = state.contact.is_none() || link_pushed;
             let towards = if lead_unknown { self.motor_lead } else { state.bounded_motor_lead() };
-            (towards, slowly)
+            (towards, slow)
         } else {
             self.integral.integrate(tables, self.position_error(state), cut);
             // A distance corrected on one flank would be wrong by the whole lost motion on the other: the motor moves
             // to the expected flank.
             let to_expected_flank = |share: T| (share * state.half_gap, tables.law.back_calculation);
-            self.expected_flank.map_or((T::ZERO, slowly), to_expected_flank)
+            self.expected_flank.map_or((T::ZERO, slow), to_expected_flank)
         };
         let motor_lead = self.motor_lead + part * (towards - self.motor_lead);
         if motor_lead.is_finite() {

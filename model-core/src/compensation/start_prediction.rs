@@ -65,11 +65,11 @@ impl<T: Real> StartPrediction<T> {
             return self.last_flank.map(|last_flank| if continues { last_flank } else { last_flank.opposite() });
         }
         self.standstill_time = T::ZERO;
-        if let Some(goes) = Flank::towards(direction) {
+        if let Some(flank) = Flank::towards(direction) {
             if self.rests {
-                self.continues = self.last_flank.map(|last_flank| last_flank == goes);
+                self.continues = self.last_flank.map(|last_flank| last_flank == flank);
             }
-            (self.last_flank, self.rests) = (Some(goes), false);
+            (self.last_flank, self.rests) = (Some(flank), false);
         }
         None
     }

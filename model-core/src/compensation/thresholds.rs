@@ -6,8 +6,8 @@
 //!
 //! Origin: *derived* (formula), *data sheet*, *measured* (test), *chosen* (reason), *tuned* (test; RMS errors and peaks
 //! are over those of the motor PID). Where no test is named, no sensitivity is recorded.
-//! `docs/decisions/compensation-modelled-joints.md` and `compensation-real-joints.md` have the figures of the rejected
-//! values.
+//! `docs/decisions/compensation-modelled-joints.md` and `docs/decisions/compensation-real-joints.md` have the figures of
+//! the rejected values.
 
 use crate::numbers::Real;
 

@@ -60,6 +60,6 @@ fn torque_of_the_motor_alone_is_not_transmitted() {
         fresh.plan(&tables, &now).expect("a number");
         (demand.is_transmitted(), fresh.torque())
     });
-    assert!(!alone.0, "a motor in the open gap is taken to press {} N m", alone.1);
-    assert!(both.0, "teeth that pass {} N m are taken for open", both.1);
+    assert!(!alone.0, "a motor in the open gap counts as pressing {} N m", alone.1);
+    assert!(both.0, "teeth that pass {} N m count as open", both.1);
 }

@@ -54,7 +54,7 @@ pub fn say_the_same(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> boo
         fs::write(&path, bytes).expect("room");
         path
     });
-    compare(&old, &new, Options::default()).is_ok_and(|found| found.all_same())
+    compare(&old, &new, Options::default()).is_ok_and(|found| found.is_same())
 }
 
 /// A board has a clock of its own, and what came when is told: the motion is the same, and the page is whole.

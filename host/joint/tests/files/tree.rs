@@ -54,7 +54,7 @@ pub fn is_equal(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> bool {
         fs::write(&path, bytes).expect("room");
         path
     });
-    compare(&old, &new, Options::default()).is_ok_and(|found| found.all_same())
+    compare(&old, &new, Options::default()).is_ok_and(|found| found.is_same())
 }
 
 /// Compares files of a board. Its clock makes the times differ: motion and completeness must be equal, and the page

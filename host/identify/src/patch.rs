@@ -36,7 +36,7 @@ pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &st
         }
         text = set(&text, key, &format!("{value:.6e}"), &remark)?;
     }
-    named::read_changed(format!("{} with what was found", loaded.name), text.clone(), &[])?;
+    named::read_changed(format!("{} with the identified values", loaded.name), text.clone(), &[])?;
     Ok(text)
 }
 

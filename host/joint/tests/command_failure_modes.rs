@@ -185,7 +185,7 @@ fn ctrl_c_stops_the_run_and_keeps_the_record() {
     let start = Instant::now();
     let ended = wait(child);
     assert!(start.elapsed() < LIVENESS);
-    ended.said(130, &["stopped by the user", "what was recorded"]);
+    ended.said(130, &["stopped by the user", "the recording"]);
     assert_eq!(record(&out)["completeness"]["state"], "interrupted");
 }
 

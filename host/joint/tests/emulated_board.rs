@@ -156,7 +156,7 @@ fn an_emulator_killed_in_mid_run_is_named_and_the_record_is_kept() {
     let out = folder();
     let (child, emulator) = long_run(&out);
     kill(emulator);
-    end(child).refused(&["the emulator has ended", "what was recorded"]);
+    end(child).refused(&["the emulator has ended", "the recording"]);
     assert_incomplete(&out);
 }
 

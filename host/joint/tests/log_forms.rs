@@ -82,12 +82,13 @@ fn registers_of_any_width_are_read_as_counts_that_go_on() {
         identify(folder, &[]).well();
         let (found, told) = findings(folder);
         alike(&found, &truth);
-        let counts = format!("`motor_counts` is read as a register that begins anew after {} values", 1 << motor.0);
+        let counts = format!("`motor_counts` is read as a register that wraps after {} values", 1 << motor.0);
         assert!(told.contains(&counts), "{told}");
     }
     // Fewer counts than a turn is set to have: the option that is to be stated, with another value than the one that is.
     write(folder, &plain.iter().map(|row| [row[0], row[1].rem_euclid(8192.0), row[2], row[3]]).collect::<Vec<_>>());
-    identify(folder, &["--motor-bits", "14"]).refused(&["an encoder of 13 bits begins anew so, and 14 bits are set"]);
+    identify(folder, &["--motor-bits", "14"])
+        .refused(&["an encoder of 13 bits wraps by this jump, but 14 bits are set"]);
 }
 
 #[test]
@@ -113,7 +114,7 @@ fn bad_readings_are_left_out_and_told_up_to_one_percent() {
     }
     (100..count).step_by(50).for_each(|row| spoiled[row][1] += 8192.0);
     write(folder, &spoiled);
-    identify(folder, &[]).refused(&["readings of `motor_counts` (2.", "line 102", "up to 1 % are left out"]);
+    identify(folder, &[]).refused(&["readings of `motor_counts` (2.", "line 102", "up to 1 % are removed"]);
 }
 
 #[test]
@@ -172,8 +173,8 @@ fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
     identify(folder, &[]).well();
     let (found, told) = findings(folder);
     holds_the_truth(&found);
-    assert!(told.contains("Lines 1 to 3 before the header passed over"), "{told}");
-    assert!(told.contains("rows were left out, since a value is missing: `motor_counts` is empty in"), "{told}");
+    assert!(told.contains("Lines 1 to 3 before the header skipped"), "{told}");
+    assert!(told.contains("rows were removed because a value is missing: `motor_counts` is empty in"), "{told}");
     // The observer is shown the same rows.
     let [path, out] = ["log.csv", "replay"].map(|name| folder.join(name));
     joint(&["replay", text(&path), "q1", "--out", text(&out)]).well();

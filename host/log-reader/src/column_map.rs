@@ -90,7 +90,7 @@ pub fn parse_renaming(text: &str) -> Result<(String, String), String> {
         return Ok((own.to_owned(), theirs.to_owned()));
     }
     let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).collect();
-    Err(format!("`{own}` is none of {}", names.join(", ")))
+    Err(format!("`{own}` is not one of {}", names.join(", ")))
 }
 
 /// Joints of a map in order of their names; empty for a map of one joint.
@@ -114,8 +114,8 @@ fn text(path: &Path) -> Outcome<String> {
 
 fn refused(why: &str) -> Failure {
     Failure::new(why.to_owned()).with_help(
-        "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"; [joints.NAME.columns] and \
-         [joints.NAME.units] those of one of several joints",
+        "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"; \
+             [joints.NAME.columns] and [joints.NAME.units] define one of several joints",
     )
 }
 
@@ -199,9 +199,9 @@ mod tests {
     #[test]
     fn invalid_map_is_rejected_with_place() {
         for (text, why) in [
-            ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is none of"),
+            ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is not one of"),
             ("[columns]\nmotor_angle = 3\n", "line 2"),
-            ("[columns]\n[units]\nmotor_angle = \"grad\"\n", "[units]: `grad` is none of"),
+            ("[columns]\n[units]\nmotor_angle = \"grad\"\n", "[units]: `grad` is not one of"),
             ("[column]\n", "line 1"),
             ("", "columns"),
         ] {

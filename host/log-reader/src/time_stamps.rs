@@ -43,11 +43,13 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     let has_counter = columns.column(PERIOD).is_some();
     Err(Failure::new(format!("the time does not rise in {}: {told}, with other values", columns.place(first))).with_help(
         if has_counter {
-            format!("`{PERIOD}` does not count control periods evenly by that time: log the controller's own clock as time_us")
+            format!("`{PERIOD}` does not count control periods evenly against the time: log the controller's own clock as \
+                 time_us")
         } else {
             format!(
-                "log the number of the control period and name its column, --column {PERIOD}=NAME, or the controller's own clock \
-                 (--column time_us=NAME); stamps of a host that receives several samples at once tell no times"
+                "log the number of the control period and name its column, --column {PERIOD}=NAME, or the \
+                     controller's own clock (--column time_us=NAME); the stamps of a host that receives several samples \
+                     at once are not the samples' times"
             )
         },
     ))

@@ -109,7 +109,7 @@ fn check_halves(halves: &[(f64, f64)]) -> Outcome<()> {
     match halves {
         [] => Ok(()),
         [(from, to), (other_from, other_to)] if to <= other_from || other_to <= from => Ok(()),
-        [_, _] => Err(Failure::new("the two halves overlap").with_help("a moment can be loaded one way only")),
+        [_, _] => Err(Failure::new("the two halves overlap").with_help("the load has one direction at a time")),
         halves => Err(Failure::new(format!("--half is given {} times", halves.len()))
             .with_help("give it twice: for the sweeps that are loaded one way, and for those loaded the other way")),
     }

@@ -103,17 +103,17 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Reads the log's columns and converts them to samples with `of`. `ratio` is the gear's ratio; `accepts` accepts a
+    /// Reads the log's columns and converts them to samples with `convert`. `ratio` is the gear's ratio; `accepts` accepts a
     /// topic or a file by its columns.
     pub fn read_log<T>(
         &self,
         ratio: f64,
         accepts: impl Fn(&Columns) -> bool,
-        of: impl FnOnce(&mut Columns) -> Outcome<T>,
+        convert: impl FnOnce(&mut Columns) -> Outcome<T>,
     ) -> Outcome<T> {
         let path = self.log.as_path();
         let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, accepts)?;
-        let samples = of(&mut columns);
+        let samples = convert(&mut columns);
         samples.map_err(|failure| columns.with_notes(failure).while_doing(path.display()))
     }
 

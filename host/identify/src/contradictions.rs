@@ -165,15 +165,17 @@ fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     let counts = if log.kinds == [Kind::Counts; 2] { output_turn as f64 / motor_turn as f64 } else { 1.0 };
     causes.consider(counts * counts / (ratio * ratio), "motor and output are exchanged");
     causes.consider(-1.0, "one encoder counts down when the joint turns forwards");
-    for (kind, name, sign, told) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
+    for (kind, name, sign, stated_turn) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
         if kind == Kind::Angles {
             for (unit, by) in ANGLE_UNITS {
                 causes.consider(by.powi(sign), format!("the {name}'s angle is in {unit}"));
             }
-            causes.consider((told as f64 / TAU).powi(sign), format!("the {name}'s angle is in counts"));
+            causes.consider((stated_turn as f64 / TAU).powi(sign), format!("the {name}'s angle is in counts"));
         } else {
             for more in (-16..=16).filter(|more| *more != 0) {
-                let Some(turn) = doubled(told, more).filter(|turn| (1 << 8..=1 << 30).contains(turn)) else { continue };
+                let Some(turn) = doubled(stated_turn, more).filter(|turn| (1 << 8..=1 << 30).contains(turn)) else {
+                    continue;
+                };
                 let text = format!("the {name} encoder has {}", resolution(turn));
                 causes.consider(f64::from(-more).exp2().powi(-sign), text);
             }

@@ -74,8 +74,8 @@ const FRICTION_BOX: f64 = 4e-3;
 /// Shortest kernel box of the twist fit [s]; at most 1/BOXES_PER_SWING of the swing's period.
 const SHORTEST_BOX: f64 = 1e-3;
 const BOXES_PER_SWING: f64 = 6.0;
-/// The box grows by BOX_GROWTH up to LONGEST_BOX [s] until the reliability of the fit exceeds RELIABILITY_TARGET: with a short box,
-/// encoder quantisation dominates the accelerations.
+/// The box grows by BOX_GROWTH up to LONGEST_BOX [s] until the reliability of the fit exceeds RELIABILITY_TARGET: with
+/// a short box, encoder quantisation dominates the accelerations.
 const BOX_GROWTH: f64 = 1.4;
 const LONGEST_BOX: f64 = 8e-3;
 const RELIABILITY_TARGET: f64 = 0.9;

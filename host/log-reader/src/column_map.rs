@@ -72,12 +72,13 @@ impl ColumnMap {
         let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
         let Some(path) = map else { return Ok(all) };
         let map = parse_joint(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
-        let said = |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
-        all.columns.extend(map.columns.into_iter().filter(|(own, _)| !said(own)));
+        let is_on_command_line =
+            |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
+        all.columns.extend(map.columns.into_iter().filter(|(own, _)| !is_on_command_line(own)));
         // A column renamed with a unit in its name needs no unit of the map.
         let is_there = |unit: &Unit| all.columns.iter().any(|(own, _)| own == unit.name());
-        let told = |unit: &Unit| units.iter().any(|other| other.name() == unit.name());
-        all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !told(unit)));
+        let has_stated_unit = |unit: &Unit| units.iter().any(|other| other.name() == unit.name());
+        all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !has_stated_unit(unit)));
         Ok(all)
     }
 }

@@ -17,7 +17,8 @@ use report::failure::{Failure, Outcome};
 const MAGIC: &[u8] = b"\x89MCAP";
 /// Topics and fields named in a message at most.
 const NAMES_SHOWN: usize = 12;
-/// Memory of columns over the file's size, plus MEMORY_BASE bytes: other topics than a joint's may be packed much tighter.
+/// Memory of columns over the file's size, plus MEMORY_BASE bytes: other topics than a joint's may be packed much
+/// tighter.
 const MEMORY_FACTOR_MAX: u64 = 256;
 const MEMORY_BASE: u64 = 64 << 20;
 

@@ -88,7 +88,7 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, t
         }
         if let Some(register) = Register::find(&values, Some(turn)) {
             register.join(&mut values, |row| times.periods_before(row));
-            register.note(name, Some(turn)).into_iter().for_each(|told| columns.add_note(told));
+            register.note(name, Some(turn)).into_iter().for_each(|note| columns.add_note(note));
         }
         let steps = times.per_period_steps(values.windows(2).map(|pair| pair[1] - pair[0]).collect());
         check_steps(&steps, &Encoder { what, name, counts_per_turn, turn, count: 1.0 }, columns)?;

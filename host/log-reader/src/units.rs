@@ -103,9 +103,9 @@ pub fn parse(text: &str) -> Result<Unit, String> {
 /// Converts columns with bare names to canonical columns in SI; `ratio` is motor over output.
 pub fn convert(mut columns: Columns, units: &[Unit], ratio: f64) -> Outcome<Columns> {
     for (place, Quantity { name, column, over_gears, .. }) in QUANTITIES.iter().enumerate() {
-        let mut told = units.iter().filter(|unit| unit.quantity == place);
+        let mut stated_units = units.iter().filter(|unit| unit.quantity == place);
         let has = |wanted: &str| columns.names().any(|name| name == wanted);
-        match (told.next(), has(name)) {
+        match (stated_units.next(), has(name)) {
             (None, false) => {}
             (None, true) if has(column) => {}
             (None, true) => {
@@ -121,7 +121,7 @@ pub fn convert(mut columns: Columns, units: &[Unit], ratio: f64) -> Outcome<Colu
                 return Err(Failure::new(format!("--unit {name}: there is no column `{name}`")).with_help(help));
             }
             (Some(unit), true) => {
-                if told.next().is_some() {
+                if stated_units.next().is_some() {
                     return Err(Failure::new(format!("--unit {name} is given twice")).with_help("give it once"));
                 }
                 let gears = if unit.at_output { ratio.powi(over_gears.unwrap_or_default()) } else { 1.0 };

@@ -22,8 +22,8 @@ const LOAD_MIN: f64 = 0.3;
 const LOAD_MIN_FRICTIONS: f64 = 3.0;
 /// Largest least load, as a share of the peak; above it too little is left to fit a flank.
 const LOAD_MIN_LIMIT: f64 = 0.6;
-/// After a reversal, samples are skipped until the torque has changed by STICKING_FACTOR times the change by friction plus
-/// STICKING_SHARE of the peak.
+/// After a reversal, samples are skipped until the torque has changed by STICKING_FACTOR times the change by friction
+/// plus STICKING_SHARE of the peak.
 const STICKING_FACTOR: f64 = 1.3;
 const STICKING_SHARE: f64 = 0.05;
 /// First guess of the skipped change, as a share of the peak.

@@ -259,7 +259,7 @@ impl FigureList {
         loading: Loading,
         shares: &[Estimate; 3],
         (loops, ranges): (&[Estimate], &[[f64; 2]]),
-        feigned: f64,
+        mimicked: f64,
         higher: &str,
     ) {
         let known = loading.groups() == 4;
@@ -313,7 +313,7 @@ impl FigureList {
         self.angle(
             "feigned_by_one_period",
             "mimicked by readings one sampling period apart",
-            Estimate { value: feigned, half: f64::NAN },
+            Estimate { value: mimicked, half: f64::NAN },
             "possible error of the figures by direction; not in their intervals",
         );
     }

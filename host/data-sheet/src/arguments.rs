@@ -12,10 +12,10 @@ pub const DEFAULT_SEEDS: u64 = 3;
 #[command(after_help = "Example:
   joint new elbow --ratio 9 --lost-motion-arcmin 15 --stiffness-Nm-per-arcmin 1.8 --rated-torque-Nm 8 \\
       --rotor-inertia-kg-cm2 0.32 --no-load-torque-Nm 0.05 --efficiency 0.94
-  joint new wrist --equivalent --ratio 59 --lost-motion-arcmin 3 ...     a cycloid, spur train or belt, whose teeth nobody knows
+  joint new wrist --equivalent --ratio 59 --lost-motion-arcmin 3 ...     a cycloid, spur train or belt with unknown teeth
 
-On a terminal it asks for what is left out of these. The file is elbow.toml; one that is there already is never written over.
-Exit code 2 if no gears of that ratio assemble, or if there can be no such joint.")]
+On a terminal it asks for missing figures. The file is elbow.toml; an existing file is never overwritten.
+Exit code 2 if no gears of this ratio assemble, or if the joint is impossible.")]
 pub struct Arguments {
     /// Name of the joint, or path of its file: NAME.toml
     #[arg(value_name = "NAME")]

@@ -142,7 +142,7 @@ fn check_text(path: &Path, text: &str) -> Outcome<Loaded> {
 fn check_free(path: &Path) -> Outcome<()> {
     match path.symlink_metadata() {
         Err(_) => Ok(()),
-        Ok(_) => Err(Failure::new(format!("{} is there already, and would be lost", path.display()))
+        Ok(_) => Err(Failure::new(format!("{} exists already and would be lost", path.display()))
             .with_help("give the joint another name, or move that file away")),
     }
 }

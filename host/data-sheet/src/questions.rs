@@ -101,7 +101,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         needed.iter().zip(given).filter(|(_, value)| value.is_none()).map(|(figure, _)| figure.option).collect();
     if !missing.is_empty() && !stdin.is_terminal() {
         return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
-            .with_help("give each with its figure; on a terminal they are asked for"));
+            .with_help("give each with its figure; a terminal session asks for them"));
     }
     let mut figures = [0.0; REQUIRED_FIGURES.len()];
     for ((figure, value), place) in needed.iter().zip(given).zip(&mut figures) {
@@ -134,13 +134,14 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     })
 }
 
-const HELP: &str = "`joint new --help` says what each is, and its unit";
+const HELP: &str = "`joint new --help` explains each option and its unit";
 
 /// Asks for the kind of gears until the answer is valid.
 fn ask_kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
     loop {
         output::remark(
-            "planetary, a stage whose teeth are found, or equivalent, gears without teeth such as a spur train, a cycloid or a belt:",
+            "planetary (a stage whose teeth are found) or equivalent (gears without teeth, such as a spur train, \
+                 a cycloid or a belt):",
         );
         let mut line = String::new();
         let read = answers.read_line(&mut line).unwrap_or_default();
@@ -150,7 +151,7 @@ fn ask_kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
         let answer = line.trim();
         match GEAR_KINDS.into_iter().find(|kind| !answer.is_empty() && kind.starts_with(answer)) {
             Some(kind) => return Ok(kind),
-            None => output::remark(&format!("`{answer}` is neither planetary nor equivalent; once more")),
+            None => output::remark(&format!("`{answer}` is neither planetary nor equivalent; try again")),
         }
     }
 }
@@ -182,7 +183,7 @@ impl Arguments {
         } else if self.seeds != DEFAULT_SEEDS {
             command += &format!(" --seeds {}", self.seeds);
         }
-        format!("gears of more stages, of other kinds or of unknown teeth are an equivalent gear: {command}")
+        format!("for several stages, other kinds of gears or unknown teeth use an equivalent gear: {command}")
     }
 
     /// Returns true if an option that only gears with teeth have was given.
@@ -224,7 +225,7 @@ impl Figure {
             let value = answer.parse::<f64>().map_err(|_| format!("`{answer}` is not a number"));
             match value.and_then(|value| self.check(value).map(|()| value)) {
                 Ok(value) => return Ok(value),
-                Err(why) => output::remark(&format!("{why}; once more")),
+                Err(why) => output::remark(&format!("{why}; try again")),
             }
         }
     }

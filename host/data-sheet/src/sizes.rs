@@ -105,13 +105,13 @@ fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
     let Some((width, mean_stiffness, teeth_share)) = stiff else {
         let (_, _, share) = of_width(FACE_WIDTHS[FACE_WIDTHS.len() - 1]);
         let message = format!(
-            "teeth of {} of module {module_mm} mm alone give {:.3} N m/arcmin, and the sheet says {}",
+            "{} teeth of module {module_mm} mm alone have a stiffness of {:.3} N m/arcmin, but the sheet states \
+                 {}",
             material.word(),
             sheet.stiffness / share,
             sheet.stiffness
         );
-        let help =
-            "a larger --outer-diameter-mm, --material steel, or a --stiffness-Nm-per-arcmin that is in N m/arcmin";
+        let help = "give a larger --outer-diameter-mm, --material steel, or --stiffness-Nm-per-arcmin in N m/arcmin";
         return Err(Failure::new(message).with_help(help));
     };
     let of_metre = material.density() * width;
@@ -152,7 +152,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
         let from = format!("{diameter} mm outer diameter over {outside} modules of ring and rim");
         return fits.map(|module| (module, from)).ok_or_else(|| {
             Failure::new(format!("a ring of {} teeth does not fit {diameter} mm at any module", teeth.ring)).with_help(
-                format!("{:.0} mm take module {}; or a smaller --ratio", outside * MODULES[0] + 0.5, MODULES[0]),
+                format!("{:.0} mm fit module {}; or give a smaller --ratio", outside * MODULES[0] + 0.5, MODULES[0]),
             )
         });
     }

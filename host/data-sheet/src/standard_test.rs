@@ -36,10 +36,10 @@ const KNOWN_KEYS: [&str; 2] = ["bits", "control_rate_Hz"];
 /// Measures every assumed line with `seeds` seeds, and returns the results of the file itself.
 pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) -> Outcome<Figures> {
     let tried: Vec<&mut Line> = lines.iter_mut().filter(|line| line.is_assumed()).collect();
-    progress.run("trying what is assumed", 3 + 2 * tried.len() as u64);
+    progress.run("measuring the assumptions", 3 + 2 * tried.len() as u64);
     let refused = |why: String| {
         Failure::new(format!("the standard test cannot be run on this joint: {why}"))
-            .with_help("a figure of the data sheet may be in another unit; `joint new --help` says which is meant")
+            .with_help("a figure of the data sheet may be in another unit; `joint new --help` states the units")
     };
     let test = StandardTest { text, seeds, designed: design(&test_file("").map_err(refused)?, text).map_err(refused)? };
     let of_file = test.figures("").map_err(refused)?;

@@ -84,7 +84,7 @@ pub fn find(ratio: f64, tolerance: f64, planets: u32) -> Outcome<Teeth> {
         format!("the nearest ratio is {:.4} ({}, {}, {} teeth): ", teeth.ratio(), teeth.sun, teeth.planet, teeth.ring)
     });
     let fewer = if planets > 3 { ", fewer planets" } else { "" };
-    Err(Failure::new(message).with_help(format!("{near}another --ratio, a larger --ratio-tolerance{fewer}")))
+    Err(Failure::new(message).with_help(format!("{near}give another --ratio, a larger --ratio-tolerance{fewer}")))
 }
 
 #[cfg(test)]

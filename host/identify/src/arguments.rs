@@ -17,7 +17,7 @@ pub const INERTIA_ERROR: f64 = 0.015;
 #[command(
     after_help = "LOG is a CSV file whose first line names the columns, or an MCAP log with a topic of such fields:
   time_s, motor_counts, output_counts, motor_torque_N_m and, if it was measured, output_torque_N_m
-(time_ms or time_us, motor_angle_rad and output_angle_rad are understood too; other names by --column).
+(time_ms, time_us, motor_angle_rad and output_angle_rad are accepted too; other names with --column).
 
 Examples:
   joint identify my_log.csv --joint my_joint.toml --motor-bits 14 --output-bits 18
@@ -26,12 +26,12 @@ Examples:
   joint identify drive.csv --column motor_angle=pos --unit motor_angle=turns --column motor_torque=iq
     --unit motor_torque=0.06*N_m
   joint identify virtual.csv --joint q1 --simulate --seed 7    makes a log on the f64 reference, without hardware
-  joint identify virtual.csv --joint q1                        and what is found in it
+  joint identify virtual.csv --joint q1                        identifies the joint of that log
   joint identify sweeps.csv --quasi-static --gear-ratio 6      slow sweeps to and fro, without a joint file
   joint identify held.csv --joint my_joint.toml --output-locked    slow torque to and fro, the output clamped
   joint identify servo.csv --joint my_joint.toml --output-only     torque steps to and fro, no encoder at the motor
 
-Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
+Exit code: 0 if something could be identified, 2 for bad input or a log that determines nothing, 130 after Ctrl-C."
 )]
 pub struct Arguments {
     /// Recorded reversal test; with --simulate, the new file to be written
@@ -103,17 +103,17 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Reads the log's columns and converts them to samples with `of`. `ratio` is the gear's ratio; `accepts` accepts a
+    /// Reads the log's columns and converts them to samples with `convert`. `ratio` is the gear's ratio; `accepts` accepts a
     /// topic or a file by its columns.
     pub fn read_log<T>(
         &self,
         ratio: f64,
         accepts: impl Fn(&Columns) -> bool,
-        of: impl FnOnce(&mut Columns) -> Outcome<T>,
+        convert: impl FnOnce(&mut Columns) -> Outcome<T>,
     ) -> Outcome<T> {
         let path = self.log.as_path();
         let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, accepts)?;
-        let samples = of(&mut columns);
+        let samples = convert(&mut columns);
         samples.map_err(|failure| columns.with_notes(failure).while_doing(path.display()))
     }
 
@@ -124,6 +124,6 @@ impl Arguments {
 }
 
 fn percent(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "write a number of percent".to_owned())?;
+    let value: f64 = text.parse().map_err(|_| "write a number in percent".to_owned())?;
     if (0.0..=50.0).contains(&value) { Ok(value) } else { Err("must be from 0 to 50 percent".to_owned()) }
 }

@@ -137,7 +137,7 @@ pub fn check_angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
     );
     let check = "check the teeth of the joint file, units, --motor-bits and --output-bits, and that both encoders count up \
                  when the joint turns forwards";
-    let ratio = format!("the gears' ratio is {} instead", ESTIMATE.write(prior.ratio() * factor.value));
+    let ratio = format!("the gear ratio is {} instead", ESTIMATE.write(prior.ratio() * factor.value));
     let causes = angle_causes(log, prior, factor);
     let otherwise = causes.list.is_empty().then_some(ratio).filter(|_| factor.value > 0.0);
     Err(Failure::new(message).with_help(causes.help(otherwise, check)))
@@ -165,15 +165,17 @@ fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     let counts = if log.kinds == [Kind::Counts; 2] { output_turn as f64 / motor_turn as f64 } else { 1.0 };
     causes.consider(counts * counts / (ratio * ratio), "motor and output are exchanged");
     causes.consider(-1.0, "one encoder counts down when the joint turns forwards");
-    for (kind, name, sign, told) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
+    for (kind, name, sign, stated_turn) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
         if kind == Kind::Angles {
             for (unit, by) in ANGLE_UNITS {
                 causes.consider(by.powi(sign), format!("the {name}'s angle is in {unit}"));
             }
-            causes.consider((told as f64 / TAU).powi(sign), format!("the {name}'s angle is in counts"));
+            causes.consider((stated_turn as f64 / TAU).powi(sign), format!("the {name}'s angle is in counts"));
         } else {
             for more in (-16..=16).filter(|more| *more != 0) {
-                let Some(turn) = doubled(told, more).filter(|turn| (1 << 8..=1 << 30).contains(turn)) else { continue };
+                let Some(turn) = doubled(stated_turn, more).filter(|turn| (1 << 8..=1 << 30).contains(turn)) else {
+                    continue;
+                };
                 let text = format!("the {name} encoder has {}", resolution(turn));
                 causes.consider(f64::from(-more).exp2().powi(-sign), text);
             }
@@ -232,14 +234,14 @@ pub fn check_offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> 
     let length = log.time.last().copied().unwrap_or_default() / twist::STRETCHES as f64;
     let [from, to] = [place, place + 2].map(|place| ESTIMATE.write(place as f64 * length));
     Err(Failure::new(format!(
-        "motor and output do not stay together: their difference at the output changes by {} mrad from {from} s to {to} s, beside a lost \
-         motion of {} mrad in the joint file",
+        "the offset between motor and output changes by {} mrad at the output from {from} s to {to} s; the \
+             lost motion in the joint file is {} mrad",
         ESTIMATE.write(1e3 * steps[place].0),
         ESTIMATE.write(1e3 * prior.lost_motion)
     ))
     .with_help(
-        "perhaps an encoder or a clamp has slipped, counts were lost, or two logs were joined; take a stretch in which nothing \
-         slips",
+        "perhaps an encoder or a clamp slipped, counts were lost, or two logs were joined; cut the log to a \
+             part without slips",
     ))
 }
 
@@ -268,14 +270,15 @@ pub fn check_age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
         return Ok(());
     }
     Err(Failure::new(format!(
-        "the {older} readings are {} ms older than the {newer}, and a joint that swings at {:.0} Hz wants them within {} ms",
+        "the {older} readings are {} ms older than the {newer}, but a joint that swings at {:.0} Hz needs \
+             them within {} ms",
         ESTIMATE.write(1e3 * age.abs()),
         1.0 / prior.swing_period(),
         ESTIMATE.write(1e3 * most)
     ))
     .with_help(format!(
-        "perhaps a filter delays the {older} readings, which must be recorded without, or one column is that much behind: shift it by so \
-         many rows"
+        "perhaps a filter delays the {older} readings: record them unfiltered; or one column lags by this \
+             time: shift it by the corresponding number of rows"
     )))
 }
 
@@ -325,7 +328,8 @@ pub fn check_sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -
     let Some(motor) = sure(&motor, MOTOR_INERTIA_FACTOR_MAX) else { return Ok(()) };
     let inertia = motor.value * prior.motor_inertia;
     Err(Failure::new(format!(
-        "by the torque at the output what turns with the motor has an inertia of {} kg m^2, that of the joint file {}",
+        "by the torque at the output the inertia that turns with the motor is {} kg m^2, but {} kg m^2 by the \
+             joint file",
         ESTIMATE.write(inertia),
         ESTIMATE.write(prior.motor_inertia)
     ))
@@ -340,12 +344,15 @@ pub fn check_frictions(findings: &[Finding]) -> Outcome<()> {
     };
     let Some(finding) = findings.iter().find(drives) else { return Ok(()) };
     Err(Failure::new(format!(
-        "by this log the {} drives: it is {} {}",
+        "the {} is negative in this log: {} {}",
         finding.name,
         ESTIMATE.write(finding.value.unwrap_or_default()),
         finding.unit
     ))
-    .with_help("perhaps time runs backwards, signs of torque and angles are exchanged, or the efficiency of the joint file is too low"))
+    .with_help(
+        "perhaps the time runs backwards, the sign of the torque or of the angles is wrong, or the efficiency \
+         in the joint file is too low",
+    ))
 }
 
 /// Rejects a log whose torque differs by direction, is not proportional, or has a large constant part.
@@ -365,8 +372,8 @@ pub fn check_symmetry(log: &Log, prior: &PriorModel) -> Outcome<()> {
             ESTIMATE.write(value),
             ESTIMATE.write(value / prior.ratio())
         ))
-        .with_help("set the zero of the torque's measurement, see that it is as large one way as the other, or take the load off that pulls one \
-             way"));
+        .with_help("correct the zero of the torque measurement, check that its scale is the same in both directions, or \
+             remove the constant load"));
     }
     if let Some([small, more]) = balances::factors_by_size(rows, prior)
         && small.is_determined()
@@ -378,7 +385,7 @@ pub fn check_symmetry(log: &Log, prior: &PriorModel) -> Outcome<()> {
              below",
             ESTIMATE.write(ratio)
         ))
-        .with_help("perhaps it is clipped, or the drive gives less than it is asked for: log the torque from measured currents"));
+        .with_help("perhaps it is clipped, or the drive gives less than commanded: log the torque from measured currents"));
     }
     let Some([forwards, backwards]) = balances::factors_by_direction(rows, prior) else { return Ok(()) };
     let (value, deviation) = (
@@ -397,7 +404,7 @@ pub fn check_symmetry(log: &Log, prior: &PriorModel) -> Outcome<()> {
         "for the same acceleration the torque of this log is {} times as large forwards as backwards",
         ESTIMATE.write(value)
     ))
-    .with_help("perhaps it is clipped or scaled one way: check how the torque is measured, and its zero"))
+    .with_help("perhaps it is clipped or scaled in one direction: check the torque measurement and its zero"))
 }
 
 /// Rejects a torque behind the gears that differs from the motor's torque less the torque for its own acceleration and
@@ -421,7 +428,7 @@ fn check_gear_torque(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
             "the torque at the output is {} times the motor's in every moment: it was not measured there",
             ESTIMATE.write(factor.value)
         ))
-        .with_help("leave the column out that was reckoned from the other"));
+        .with_help("remove the column that was computed from the other"));
     }
     if !factor.is_determined() || !factor.is_certainly_outside(GEAR_TORQUE_FACTOR_MAX) {
         return Ok(());
@@ -431,7 +438,7 @@ fn check_gear_torque(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
         causes.consider(by, format!("the torque at the output is in {unit}"));
         causes.consider(1.0 / by, format!("the motor's torque is in {unit}"));
     }
-    causes.consider(1.0 / prior.ratio(), "both torques are taken on the same side of the gears");
+    causes.consider(1.0 / prior.ratio(), "both torques are measured on the same side of the gears");
     causes.consider(-1.0, "one torque has the other sign");
     let message = format!(
         "the torque at the output is {} times what the motor's torque gives there by the ratio of {:.4}",
@@ -479,7 +486,7 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
     let inertia = format!("the inertia is {} kg m^2", ESTIMATE.write(factor.value * inertia));
     let is_a_current = (TORQUE_CONSTANTS[0]..TORQUE_CONSTANTS[1]).contains(&constant);
     let otherwise = if is_a_current { format!("{current}, or {inertia}") } else { inertia };
-    Failure::new(message).with_help(causes.help(Some(otherwise), "check units, bits and the time"))
+    Failure::new(message).with_help(causes.help(Some(otherwise), "check units, encoder bits and the time"))
 }
 
 /// Root mean square of the values.

@@ -74,8 +74,8 @@ const FRICTION_BOX: f64 = 4e-3;
 /// Shortest kernel box of the twist fit [s]; at most 1/BOXES_PER_SWING of the swing's period.
 const SHORTEST_BOX: f64 = 1e-3;
 const BOXES_PER_SWING: f64 = 6.0;
-/// The box grows by BOX_GROWTH up to LONGEST_BOX [s] until the reliability of the fit exceeds RELIABILITY_TARGET: with a short box,
-/// encoder quantisation dominates the accelerations.
+/// The box grows by BOX_GROWTH up to LONGEST_BOX [s] until the reliability of the fit exceeds RELIABILITY_TARGET: with
+/// a short box, encoder quantisation dominates the accelerations.
 const BOX_GROWTH: f64 = 1.4;
 const LONGEST_BOX: f64 = 8e-3;
 const RELIABILITY_TARGET: f64 = 0.9;
@@ -119,9 +119,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
         return run_one(arguments, progress);
     }
     if arguments.json.is_some() {
-        return Err(Failure::new("--json takes the findings of one joint, and the map has several").with_help(
-            "leave it out, each joint's folder has findings.json; or choose a joint with --map-joint NAME",
-        ));
+        return Err(Failure::new("--json holds the findings of a single joint, but the map has several")
+            .with_help("omit it, as each joint's folder has findings.json; or choose a joint with --map-joint NAME"));
     }
     let log = arguments.log.file_stem().unwrap_or_default();
     let out = arguments.out.clone().unwrap_or_else(|| Path::new(RESULTS_FOLDER).join(log));
@@ -207,7 +206,8 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let at_path = |failure: Failure| failure.while_doing(path.display());
     if prior.equivalent && read.output_torque.is_none() {
         return Err(at_path(Failure::new(
-            "an equivalent gear is not identified by its motor's torque: intervals missed in simulated logs",
+            "an equivalent gear cannot be identified from the motor's torque: in simulated logs the intervals \
+                 missed the true values",
         ))
         .with_help(
             "log the torque between gear and link as output_torque_N_m, or record a slow log: --quasi-static finds lost \
@@ -338,7 +338,7 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
     best.filter(|(_, _, best)| best.solution.reliability > RELIABILITY_MIN).ok_or_else(|| {
         refused.unwrap_or_else(|| {
             Failure::new("the moments at which a flank carries do not determine a fit")
-                .with_help("record more reversals with torques of different strength, or take finer encoders")
+                .with_help("record more reversals with torques of different strength, or use finer encoders")
         })
     })
 }
@@ -354,9 +354,9 @@ fn assumptions(identified: &Identified) -> Vec<String> {
             if prior.equivalent { "turns" } else { "teeth" }
         ),
         format!("Encoders of {} (motor) and {} (output).", resolution(prior.motor_turn), resolution(prior.output_turn)),
-        "Readings of motor and torque at the same time within 2 us: that is in the intervals.".to_owned(),
+        "Motor and torque are read within 2 us of each other; the intervals include this.".to_owned(),
         if prior.equivalent {
-            "An equivalent gear: errors of teeth, preload and hysteresis are not looked for.".to_owned()
+            "An equivalent gear: tooth errors, preload and hysteresis are not estimated.".to_owned()
         } else {
             "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned()
         },
@@ -365,32 +365,31 @@ fn assumptions(identified: &Identified) -> Vec<String> {
     list.extend(prior.harmonics.iter().enumerate().map(|(place, harmonic)| {
         let encoder = if harmonic.encoder == twist::MOTOR_MAP { "motor" } else { "output" };
         let size = ESTIMATE.write(twist.harmonic_amplitude(place).to_degrees());
-        format!(
-            "The {encoder} encoder has an error of {size} deg that comes {} times a turn: taken out.",
-            harmonic.order
-        )
+        format!("The {encoder} encoder has an error of {size} deg, {} times a turn; it is subtracted.", harmonic.order)
     }));
     if log.variance_shares(prior).is_some() {
-        list.push("Angles that no encoder has read, as a simulation writes them: taken as exact.".to_owned());
+        list.push("The angles are unquantised, as from a simulation, and are taken as exact.".to_owned());
     }
     if prior.sharing.is_some() {
         list.push(
-            "Planets mesh out of phase, so that errors of the teeth take a part of the gap: by transmission_error_um of the joint \
-             file, known within a half and 1 um; that is in the intervals."
+            "Planets mesh out of phase, so that tooth errors reduce the gap. The reduction follows from \
+                 transmission_error_um of the joint file, known within half its value and 1 um; the intervals include \
+                 this."
                 .to_owned(),
         );
     }
     list.push(if log.output_torque.is_some() {
         format!(
-            "Torque measured at the output, its scale expected to be right within 0.5 %, that of the motor's torque within {:.1} %, \
-             inertias of motor and link within {:.1} % each (one standard deviation); the log shows three ratios of the four.",
+            "The torque was measured at the output. Standard deviations: 0.5 % of its scale, {:.1} % of the motor \
+                 torque's scale, {:.1} % of the inertias of motor and link each; the log determines three ratios of \
+                 the four.",
             100.0 * prior.torque_error,
             100.0 * prior.inertia_error
         )
     } else {
         format!(
-            "Torque's scale expected to be right within {:.1} %, inertias of motor and link within {:.1} % each (one standard \
-             deviation); the log shows ratios of the three, and what it does not show is in the intervals.",
+            "Standard deviations: {:.1} % of the torque's scale, {:.1} % of the inertias of motor and link each. \
+                 The log determines ratios of the three; the intervals include the rest.",
             100.0 * prior.torque_error,
             100.0 * prior.inertia_error
         )
@@ -402,7 +401,7 @@ fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outc
     folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
     // The existing file may be a recorded test that cannot be repeated.
     if arguments.log.exists() {
-        return Err(Failure::new(format!("--simulate would write over {}", arguments.log.display()))
+        return Err(Failure::new(format!("--simulate would overwrite {}", arguments.log.display()))
             .with_help("name a new file, or remove this one if it is not needed"));
     }
     let mut file = loaded.file.clone();

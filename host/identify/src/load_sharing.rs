@@ -82,8 +82,8 @@ impl LoadSharing {
 
     fn mean(&self, thresholds: &[Vec<f64>], torque: f64) -> f64 {
         let force = torque.abs() * self.compliance / (2.0 * self.lever);
-        let taken = |thresholds: &Vec<f64>| force / thresholds.len() as f64 - deflection(thresholds, force);
-        0.5 * thresholds.iter().map(taken).sum::<f64>() / (thresholds.len() as f64 * self.lever)
+        let deficit = |thresholds: &Vec<f64>| force / thresholds.len() as f64 - deflection(thresholds, force);
+        0.5 * thresholds.iter().map(deficit).sum::<f64>() / (thresholds.len() as f64 * self.lever)
     }
 }
 

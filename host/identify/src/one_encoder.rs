@@ -17,7 +17,7 @@ pub fn angle(columns: &mut Columns, names: [&'static str; 2], turn: u64) -> Outc
     let Some(mut values) = columns.finite(&name)? else { return Ok(None) };
     if let Some(register) = Register::find(&values, Some(turn)) {
         register.join(&mut values, |_| 1.0);
-        register.note(&name, Some(turn)).into_iter().for_each(|told| columns.add_note(told));
+        register.note(&name, Some(turn)).into_iter().for_each(|note| columns.add_note(note));
     }
     if is_counts {
         values.iter_mut().for_each(|value| *value *= count);

@@ -65,7 +65,7 @@ pub fn findings(findings: &[Finding], file: &str) -> Vec<Block> {
     });
     let mut blocks = vec![table(columns, rows.collect())];
     if findings.iter().any(|one| stated(file, one).is_some_and(|stated| differs(one, &stated))) {
-        let note = Block::Note("Bold: what the joint file says is outside of the interval.".into());
+        let note = Block::Note("Bold: the joint file's value is outside of the interval.".into());
         blocks.push(Block::Only(PAGES, vec![note]));
     }
     blocks

@@ -31,12 +31,12 @@ pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &st
             let is_missing = |key: &str| matches!(joint_file::value(&text, key), Ok(None));
             if key.starts_with(&section) && is_missing(&bits) && is_missing(&counts) {
                 let (key, value) = if turn.is_power_of_two() { (bits, turn.ilog2().into()) } else { (counts, turn) };
-                text = set(&text, &key, &value.to_string(), &format!("as told for {log}"))?;
+                text = set(&text, &key, &value.to_string(), &format!("as stated for {log}"))?;
             }
         }
         text = set(&text, key, &format!("{value:.6e}"), &remark)?;
     }
-    named::read_changed(format!("{} with what was found", loaded.name), text.clone(), &[])?;
+    named::read_changed(format!("{} with the identified values", loaded.name), text.clone(), &[])?;
     Ok(text)
 }
 

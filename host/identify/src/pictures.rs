@@ -43,9 +43,7 @@ pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Fig
     let unit = Unit::of_angle(half_gap.abs() + compliance.abs() * reach);
     let panel = Panel { height: 420, ..Panel::lines("Motor over ratio less output", unit, marks) };
     let note =
-        "Encoder, tooth and skew errors that were found are taken off; the step between the branches is the lost \
-                motion."
-            .into();
+        "Encoder, tooth and skew errors are subtracted; the step between the branches is the lost motion.".into();
     Figure { note, ..Figure::new("Twist over torque", "torque at the output", TORQUE, (-reach, reach), vec![panel]) }
 }
 
@@ -62,7 +60,7 @@ pub fn time_history(log: &Log, twist: &Twist) -> Figure {
     let left = Mark::Points { points: left, ink: Ink::Second, label: String::new(), size: 2.0 };
     let panels = vec![
         Panel::lines("Motor torque", TORQUE, vec![torque]),
-        Panel::lines("Twist that the fit leaves over", Unit::of_angle(greatest), vec![left]),
+        Panel::lines("Residual of the twist", Unit::of_angle(greatest), vec![left]),
     ];
-    Figure::over_time("What the fit leaves over", SECONDS, range, panels)
+    Figure::over_time("Residuals of the fit", SECONDS, range, panels)
 }

@@ -17,10 +17,10 @@ const CARRYING_TIME_MIN: f64 = 0.1;
 pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     if rows.excluded_share > EXCLUDED_SHARE_MAX {
         return Err(Failure::new(format!(
-            "samples are lost so often that {:.0} % of this log's moments have one near them",
+            "too many samples are lost: {:.0} % of this log's moments are near a lost sample",
             100.0 * rows.excluded_share
         ))
-        .with_help("record so that samples arrive, or log every second one of them"));
+        .with_help("record without losses, or log every second sample"));
     }
     let (least, most) =
         log.torque.iter().fold((f64::MAX, f64::MIN), |(least, most), &torque| (least.min(torque), most.max(torque)));
@@ -53,7 +53,7 @@ pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
                 1e3 * carried,
                 1e3 * CARRYING_TIME_MIN
             ))
-            .with_help("hold the torque longer after each reversal, to both sides"));
+            .with_help("hold the torque longer after each reversal, in both directions"));
         }
     }
     Ok(())

@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Rounds of reweighting outliers.
 const REWEIGHTING_ROUNDS: usize = 12;
-/// After ROUNDS_BEFORE_EXCLUSION rounds, residuals beyond EXCLUSION_SIGMA deviations are excluded: they belong to another state, such as
-/// bouncing teeth.
+/// After ROUNDS_BEFORE_EXCLUSION rounds, residuals beyond EXCLUSION_SIGMA deviations are excluded: they belong to
+/// another state, such as bouncing teeth.
 const ROUNDS_BEFORE_EXCLUSION: usize = 5;
 const EXCLUSION_SIGMA: f64 = 8.0;
 /// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
@@ -19,8 +19,8 @@ const HUBER: f64 = 1.345;
 /// the presets; with sines of one strength, where encoder and tooth errors, inertia and compliance are confounded, up
 /// to 10,000.
 const AMPLIFICATION_SEPARATED: f64 = 6.0;
-/// From this amplification on, an unknown is not separated from the others; the threshold falls by REPETITION_PENALTY if all
-/// strokes are alike.
+/// From this amplification on, an unknown is not separated from the others; the threshold falls by REPETITION_PENALTY
+/// if all strokes are alike.
 const AMPLIFICATION_MAX: f64 = 20.0;
 const REPETITION_PENALTY: f64 = 14.0;
 

@@ -252,8 +252,8 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
     }
 }
 
-/// Direction of the motor throughout the kernel, in steps too short to hide a swing, or over SLOW_WINDOW for a motor too slow
-/// for these steps.
+/// Direction of the motor throughout the kernel, in steps too short to hide a swing, or over SLOW_WINDOW for a motor
+/// too slow for these steps.
 fn direction(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> f64 {
     let count = count_angle(prior.motor_turn);
     let turns = |half: usize, step: usize, way: f64, least: f64| {

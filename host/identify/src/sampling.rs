@@ -50,13 +50,13 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel, columns: &Columns
     }
     if rate > RATE_MAX {
         return Err(Failure::new(format!(
-            "the log is sampled at {rate:.3e} Hz, which no encoder is: at most {RATE_MAX:.0e} Hz"
+            "the log is sampled at {rate:.3e} Hz, faster than any encoder: at most {RATE_MAX:.0e} Hz"
         ))
-        .with_help("check the unit of the time: time_s, time_ms and time_us are understood"));
+        .with_help("check the unit of the time: time_s, time_ms and time_us are accepted"));
     }
     if time < DURATION_MIN {
         return Err(Failure::new(format!("the log is too short: {time:.3} s, at least {DURATION_MIN} s are needed"))
-            .with_help("record several reversals to both sides; docs/reference/identify.md tells a good test"));
+            .with_help("record several reversals to both sides; docs/reference/identify.md describes a good test"));
     }
     Ok(())
 }
@@ -68,12 +68,13 @@ fn finer_unit_help(columns: &Columns, by: f64, rate: f64) -> String {
     match finer {
         Some(name) => {
             format!(
-                "if the time is in {}, which were {rate:.0} Hz, call its column {name}",
+                "if the time is in {}, for a rate of {rate:.0} Hz, name its column {name}",
                 name.trim_start_matches("time_")
             )
         }
         None => format!(
-            "if the unit of the time is {by:.0} times less than stated, which were {rate:.0} Hz, state that one"
+            "if the unit of the time is {by:.0} times smaller than stated, for a rate of {rate:.0} Hz, state that \
+                 unit"
         ),
     }
 }

@@ -125,7 +125,7 @@ impl Scales {
     /// of motor torque, motor inertia and link inertia relative to it.
     pub fn from_sensor(prior: &PriorModel, [motor_torque, motor, link]: [Option<Factor>; 3]) -> Self {
         let seen = [motor_torque, motor, link].map(MeasuredLogarithm::of_factor);
-        let told = |place: usize| {
+        let log_ratio_to_sensor = |place: usize| {
             Vector4::from_fn(|row, _| {
                 if row == 0 {
                     1.0
@@ -138,7 +138,7 @@ impl Scales {
         };
         let (solved, covariance, birge) = most_likely(
             Vector4::from([SENSOR_SCALE_DEVIATION, prior.torque_error, prior.inertia_error, prior.inertia_error]),
-            &[(told(1), seen[0]), (told(2), seen[1]), (told(3), seen[2])],
+            &[(log_ratio_to_sensor(1), seen[0]), (log_ratio_to_sensor(2), seen[1]), (log_ratio_to_sensor(3), seen[2])],
         );
         let scale = |place: usize| Scale::from_logarithm(solved[place], covariance[(place, place)], birge);
         Self {

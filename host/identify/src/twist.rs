@@ -44,7 +44,7 @@ pub const UNKNOWNS: usize = 25;
 /// Harmonic encoder errors are sought in these orders per turn, HARMONICS_MAX at most.
 const HARMONIC_ORDERS: std::ops::RangeInclusive<u32> = 3..=24;
 const HARMONICS_MAX: usize = 4;
-/// A higher error is accepted if it exceeds HARMONIC_SIGMA deviations and HARMONIC_GAP_SHARE times the half-gap.
+/// A harmonic is accepted if it exceeds HARMONIC_SIGMA deviations and HARMONIC_GAP_SHARE times the half-gap.
 const HARMONIC_SIGMA: f64 = 6.0;
 const HARMONIC_GAP_SHARE: f64 = 0.002;
 /// Stretches of a log whose offsets are compared.
@@ -203,8 +203,8 @@ const NOISY_UNKNOWNS: [usize; NOISY_COEFFICIENTS] = [COMPLIANCE, RELAXATION, SKE
 /// derivative of motor and output in each.
 fn noise_covariance(log: &Log, products: &[[f64; 3]; 3], prior: &PriorModel, row: &Row) -> NoiseCovariance {
     let ratio = prior.ratio();
-    let taken = if row.measured.is_some() { 0.0 } else { -row.leverage };
-    let torque = [0.0, taken * prior.surroundings.motor_friction.viscous, taken * prior.motor_inertia];
+    let torque_slope = if row.measured.is_some() { 0.0 } else { -row.leverage };
+    let torque = [0.0, torque_slope * prior.surroundings.motor_friction.viscous, torque_slope * prior.motor_inertia];
     let of_motor = [torque, [0.0, 1.0 / ratio, 0.0], [0.0; 3], [1.0 / ratio, 0.0, 0.0]];
     let of_output = [[0.0; 3], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
     let mut covariance = NoiseCovariance::default();
@@ -225,8 +225,8 @@ fn noise_covariance(log: &Log, products: &[[f64; 3]; 3], prior: &PriorModel, row
 /// Twist of a moment if all planets carried from the first touch on, corrected to second order by the age of the output
 /// [rad].
 fn evenly_shared_twist(log: &Log, prior: &PriorModel, row: &Row) -> f64 {
-    let taken = prior.sharing.as_ref().map_or(0.0, |sharing| row.flank * sharing.reduction(row.torque()));
-    row.twist + taken + 0.5 * log.output_age * log.output_age * row.output_acceleration
+    let reduction = prior.sharing.as_ref().map_or(0.0, |sharing| row.flank * sharing.reduction(row.torque()));
+    row.twist + reduction + 0.5 * log.output_age * log.output_age * row.output_acceleration
 }
 
 /// Coefficients of the unknowns at a moment.
@@ -269,10 +269,10 @@ fn equation(log: &Log, rows: &Rows, prior: &PriorModel, row: &Row) -> Vec<f64> {
 impl Twist {
     /// Half of the lost motion at rest, where the foremost planets touch [rad].
     pub(super) fn half_lost_motion(&self, prior: &PriorModel) -> Estimate {
-        let [taken, more] =
+        let [reduction, excess] =
             prior.sharing.as_ref().map_or([0.0; 2], |sharing| [sharing.reduction(0.0), sharing.excess_reduction(0.0)]);
-        let value = self.solution.values[HALF_GAP] - taken - more * self.solution.values[SHARING];
-        Estimate::of_function(&self.solution, value, &[(HALF_GAP, 1.0), (SHARING, -more)])
+        let value = self.solution.values[HALF_GAP] - reduction - excess * self.solution.values[SHARING];
+        Estimate::of_function(&self.solution, value, &[(HALF_GAP, 1.0), (SHARING, -excess)])
     }
 
     /// Compliance of the joint [rad/(N m)].

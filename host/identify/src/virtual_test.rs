@@ -97,7 +97,7 @@ pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<VirtualR
                 joint.mesh_forces.iter().flatten().sum::<f64>() * lever
             };
             samples.push(Sample { seen: plant.measure(), torque, output_torque });
-            plant.advance(torque).map_err(|error| Failure::new(format!("the joint cannot be followed: {error}")))?;
+            plant.advance(torque).map_err(|error| Failure::new(format!("the joint cannot be simulated: {error}")))?;
         }
     }
     Ok(VirtualRecording { samples, rate })

@@ -40,7 +40,7 @@ pub(crate) const SEPARATE_KEYS: [&str; 8] = [
 /// Gears and carrier from their inertia at the input, shared as by discs of one thickness.
 fn read_at_input(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
     for key in SEPARATE_KEYS.into_iter().filter(|key| section.has(key)) {
-        let message = format!("`{key}` is part of `{COMBINED_KEY}`: both say what gears and carrier weigh");
+        let message = format!("`{key}` and `{COMBINED_KEY}` both state the inertia of gears and carrier");
         let help = format!("keep `{COMBINED_KEY}`, or the masses of sun, planets and carrier");
         section.notes.error(section.place(key), message, help);
     }

@@ -103,7 +103,7 @@ pub fn change_with_remark(text: &str, key: &str, value: &str, remark: &str) -> R
     let set = |text: &String| lookup(text, &path).is_some_and(|(_, found)| text[found] == value);
     candidates.into_iter().flatten().find(set).ok_or_else(|| Refused {
         message: format!("`{path}` cannot be set to {value}"),
-        help: "the joint file must be TOML by itself before a value of it can be changed".into(),
+        help: "the joint file must be valid TOML before a value can be changed".into(),
     })
 }
 
@@ -111,7 +111,7 @@ pub fn change_with_remark(text: &str, key: &str, value: &str, remark: &str) -> R
 const DEFAULT_REMARK: &str = "set on the command line";
 
 fn cannot_remove(path: &str) -> Refused {
-    let message = format!("`{path}` is in the way, and cannot be taken out by itself");
+    let message = format!("`{path}` conflicts with the change and cannot be removed by itself");
     Refused { message, help: "write every key of the joint file on a line of its own".into() }
 }
 

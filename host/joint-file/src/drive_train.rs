@@ -58,7 +58,7 @@ fn effects(section: &Section<'_>, ideal: Surroundings) -> Surroundings {
     let needs = |key: &str, other: &str| {
         if section.has(key) && !section.has(other) {
             let help = format!("give `{other}` beside it, or leave it out");
-            section.notes.error(section.place(key), format!("`{key}` says nothing without `{other}`"), help);
+            section.notes.error(section.place(key), format!("`{key}` has no effect without `{other}`"), help);
         }
     };
     needs("payload_inertia_share", "payload_frequency_Hz");
@@ -116,12 +116,12 @@ pub(crate) fn check(joint: &JointParameters, around: &Surroundings, notes: &Note
     };
     if around.hysteresis.stiffness_share > 0.0 && joint.compliance.is_none() {
         let help = "give [compliance], or leave it out: carrier and link of this joint turn as one";
-        refuse(Effect::Hysteresis.key(), "is a part of a stiffness that the joint does not have", help);
+        refuse(Effect::Hysteresis.key(), "needs a stiffness that the joint does not have", help);
     }
     for effect in [Effect::Payload, Effect::PayloadStep] {
         if around.size(effect) != 0.0 && joint.link_inertia == 0.0 {
             let help = "give `link_inertia_kg_m2` in [bodies]";
-            refuse(effect.key(), "is of an inertia that the joint does not have", help);
+            refuse(effect.key(), "needs an inertia that the joint does not have", help);
         }
     }
 }
@@ -139,7 +139,8 @@ fn motor_friction(section: &Section<'_>, ratio: Option<f64>) -> Option<f64> {
                 let at_motor = load / (ratio * efficiency);
                 let message =
                     format!("`{NO_LOAD}` is {no_load}, but the load's dry friction alone takes {at_motor:.4} N m");
-                let help = "it is the torque at the input that turns the joint: lower `load_coulomb_friction_N_m`";
+                let help =
+                    "it is the torque at the input that turns the unloaded joint: lower `load_coulomb_friction_N_m`";
                 section.notes.error(section.place(NO_LOAD), message, help);
             }
             left
@@ -155,7 +156,7 @@ fn control_rate(section: &Section<'_>) -> Option<u32> {
     let rate = stated as u32;
     if f64::from(rate) != stated {
         let message = format!("`{key}` = {stated} is taken as {rate}");
-        let help = "give a whole number of control periods a second";
+        let help = "give a whole number of control periods per second";
         section.notes.problem(section.place(key), message, help, Severity::Warning);
     }
     Some(rate)
@@ -193,7 +194,11 @@ fn subdivision(section: &Section<'_>) -> SubdivisionalError {
     if ![first, second].into_iter().any(|key| section.has(key)) {
         if section.has(PERIODS) {
             let help = format!("give `{first}` or `{second}` beside it, or leave it out");
-            section.notes.error(section.place(PERIODS), format!("`{PERIODS}` says nothing without an amplitude"), help);
+            section.notes.error(
+                section.place(PERIODS),
+                format!("`{PERIODS}` has no effect without an amplitude"),
+                help,
+            );
         }
         return SubdivisionalError::default();
     }

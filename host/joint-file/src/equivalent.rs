@@ -29,8 +29,8 @@ pub(crate) fn read(
     rated_output_torque: Option<f64>,
 ) -> (Option<f64>, Option<JointParameters>) {
     for word in TEETH_KEYS.into_iter().filter(|word| top.has(word)) {
-        let message = format!("`{word}` is of gears with teeth, and [equivalent_gear] has none");
-        let help = "leave one of the two out: [equivalent_gear] alone says ratio, lost motion, stiffness and damping";
+        let message = format!("`{word}` is for gears with teeth, but [equivalent_gear] has none");
+        let help = "leave one of the two out: [equivalent_gear] alone states ratio, lost motion, stiffness and damping";
         top.notes.error(top.place(word), message, help);
     }
     let ratio = ratio(section);
@@ -62,7 +62,7 @@ fn ratio(section: &Section<'_>) -> Option<[u32; 2]> {
     let stated = TURNS.into_iter().find(|key| section.has(key));
     let [over, under] = if let Some(key) = stated {
         if section.has("ratio") {
-            let message = format!("`ratio` and `{key}` both say how motor and link turn");
+            let message = format!("`ratio` and `{key}` both state the ratio of motor and link");
             section.notes.error(section.place(key), message, "keep `ratio`, or `motor_turns` and `link_turns`");
             return None;
         }
@@ -98,8 +98,8 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     if places > EXACT_DECIMALS_MAX || digits > WHOLE_NUMBER_MAX {
         let [over, under] = simple;
         note(
-            format!("`ratio` = {typed} is a fraction that was rounded, and is taken as {over}/{under}"),
-            "give `motor_turns` and `link_turns` in place of `ratio` if they are others".to_owned(),
+            format!("`ratio` = {typed} is a rounded fraction and is taken as {over}/{under}"),
+            "give `motor_turns` and `link_turns` instead of `ratio` if this is wrong".to_owned(),
         );
         return Some([u32::try_from(over).ok()?, u32::try_from(under).ok()?]);
     }
@@ -109,17 +109,15 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     let turns = format!("`motor_turns` = {over} and `link_turns` = {few} in place of `ratio`");
     if places >= AMBIGUOUS_DECIMALS {
         let help = match may_be_rounded {
-            true => format!("give {turns} if the teeth do so; else the whole turns after which both are back"),
+            true => format!("give {turns} if the teeth have this ratio; otherwise the whole turns after which both are back"),
             false => "give `motor_turns` and `link_turns` in place of `ratio`: whole numbers of turns after which both are back"
                 .to_owned(),
         };
         note(format!("`ratio` = {typed} is taken as {digits}/{under}, to the last turn"), help);
     } else if may_be_rounded {
         note(
-            format!(
-                "`ratio` = {typed} is taken as {digits}/{under}, and {over}/{few} is written so when it is rounded"
-            ),
-            format!("give {turns} if the teeth do so: the encoders tell the two apart"),
+            format!("`ratio` = {typed} is taken as {digits}/{under}, but {over}/{few} rounds to it as well"),
+            format!("give {turns} if the teeth have this ratio: the encoders distinguish the two"),
         );
     }
     Some([u32::try_from(digits).ok()?, u32::try_from(under).ok()?])
@@ -145,7 +143,7 @@ fn divisor(a: u32, b: u32) -> u32 {
 /// Inertias of the gear at its input, the rotor and the link [kg m^2].
 fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
     for key in section.keys().filter(|key| !BODY_KEYS.contains(key)) {
-        let message = format!("`{key}` is of gears with teeth, and [equivalent_gear] has none");
+        let message = format!("`{key}` is for gears with teeth, but [equivalent_gear] has none");
         let help = "give the gear's inertia at its input: gear_inertia_at_input_kg_cm2, rotor and link left out";
         section.notes.error(section.place(key), message, help);
     }
@@ -157,7 +155,7 @@ fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
     }
     if gear + rotor == 0.0 {
         let help = "give `gear_inertia_at_input_kg_cm2`, `rotor_inertia_kg_m2` or both in [bodies]";
-        section.notes.error(section.place(BODY_KEYS[1]), "nothing turns at the motor's side of the gear", help);
+        section.notes.error(section.place(BODY_KEYS[1]), "the motor's side of the gear has no inertia", help);
     }
     (link > 0.0 && gear + rotor > 0.0).then_some([gear, rotor, link])
 }

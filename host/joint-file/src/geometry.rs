@@ -29,7 +29,7 @@ pub(crate) fn read(section: &Section<'_>, coherence: Coherence) -> Option<Geomet
         (sun, planet, carrier())
     } else {
         if section.has("reference_pressure_angle_deg") {
-            let message = "`reference_pressure_angle_deg` says nothing without `module_mm`";
+            let message = "`reference_pressure_angle_deg` has no effect without `module_mm`";
             let help = "leave it out, or give module_mm instead of the radii";
             section.notes.error(section.place("reference_pressure_angle_deg"), message, help);
         }

@@ -71,7 +71,7 @@ impl Layers<'_, '_> {
         const LOST_MOTION: &str = "lost_motion_arcmin";
         let keys = ["half_backlash_um", "backlash_um"];
         if let Some(own) = self.own.filter(|own| own.has(LOST_MOTION)) {
-            let message = format!("`{LOST_MOTION}` is of all meshes together, not of {}", own.called());
+            let message = format!("`{LOST_MOTION}` is for all meshes together, not for {}", own.called());
             own.notes.error(own.place(LOST_MOTION), message, "write it in [mesh], or give the backlash of this family");
             return None;
         }
@@ -79,7 +79,7 @@ impl Layers<'_, '_> {
             self.shared.one_of(&[LOST_MOTION, keys[0], keys[1]], true)?;
             if let Some((own, key)) = self.own.and_then(|own| Some((own, keys.iter().find(|key| own.has(key))?))) {
                 let message =
-                    format!("`{key}` of {} and `{LOST_MOTION}` of [mesh] both say the backlash", own.called());
+                    format!("`{key}` of {} and `{LOST_MOTION}` of [mesh] both state the backlash", own.called());
                 own.notes.error(own.place(key), message, "keep one of them");
                 return None;
             }

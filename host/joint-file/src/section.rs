@@ -52,7 +52,7 @@ impl<'a> Section<'a> {
         let first = held.next();
         match (first, held.next()) {
             (Some(first), Some(second)) => {
-                let message = format!("`{first}` and `{second}` say the same thing twice");
+                let message = format!("`{first}` and `{second}` state one quantity twice");
                 self.notes.error(self.place(second), message, format!("keep one of {}", listed(names)));
             }
             (None, _) if needed => {

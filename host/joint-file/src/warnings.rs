@@ -33,9 +33,9 @@ mod tests {
     #[test]
     fn warning_has_file_line_and_help() {
         let paper = load(Path::new("paper")).expect("a preset");
-        let told: Vec<String> = lines(&paper).collect();
-        assert_eq!(told.len(), 2);
-        assert!(told[0].starts_with("warning: paper, line ") && told[0].contains("not coaxial"), "{told:?}");
-        assert!(told[0].ends_with("(help: ring_teeth = 97)"), "{told:?}");
+        let printed: Vec<String> = lines(&paper).collect();
+        assert_eq!(printed.len(), 2);
+        assert!(printed[0].starts_with("warning: paper, line ") && printed[0].contains("not coaxial"), "{printed:?}");
+        assert!(printed[0].ends_with("(help: ring_teeth = 97)"), "{printed:?}");
     }
 }

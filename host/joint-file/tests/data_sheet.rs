@@ -132,7 +132,7 @@ fn duplicate_quantity_names_both_keys() {
     let own = with(&[("lost_motion_arcmin", "13")]).replace("[contact]", family);
     refused(&own, &["`backlash_um` of [mesh.ring_planet]", "`lost_motion_arcmin` of [mesh]"]);
     let family = "[mesh.ring_planet]\nlost_motion_arcmin = 13\n\n[contact]";
-    refused(&q1().replace("[contact]", family), &["of all meshes together", "[mesh.ring_planet]"]);
+    refused(&q1().replace("[contact]", family), &["for all meshes together", "[mesh.ring_planet]"]);
 }
 
 #[test]
@@ -232,7 +232,7 @@ fn rounded_ratio_warns() {
     }
     refused(&c1("ratio = 59", "ratio = 100000"), &["ratio", "less than"]);
     refused(&c1("ratio = 59", "motor_turns = 59"), &["link_turns", "missing"]);
-    refused(&c1("ratio = 59", "ratio = 59\nlink_turns = 1"), &["both say", "keep `ratio`"]);
+    refused(&c1("ratio = 59", "ratio = 59\nlink_turns = 1"), &["both state", "keep `ratio`"]);
     refused(&c1("ratio = 59", "motor_turns = 3\nlink_turns = 29"), &["3/29", "faster"]);
     refused(&c1("ratio = 59", "ratio = 0.5"), &["ratio", "greater than 1"]);
 }
@@ -301,7 +301,7 @@ fn counts_per_turn_replace_bits() {
         let file = read(&counts(&format!("counts_per_turn = {turn}"))).expect("counts in a turn");
         assert_eq!(file.surroundings.motor_encoder.counts_per_turn, turn);
     }
-    refused(&counts("bits = 12\ncounts_per_turn = 4000"), &["`bits` and `counts_per_turn` say the same thing twice"]);
+    refused(&counts("bits = 12\ncounts_per_turn = 4000"), &["`bits` and `counts_per_turn` state one quantity twice"]);
     refused(&counts(""), &["needs one of `bits` and `counts_per_turn`"]);
     let set = change(preset("c1").expect("a preset"), "motor_encoder.counts_per_turn", "4000").expect("a known key");
     assert_eq!(joint(&set).surroundings.motor_encoder.counts_per_turn, 4000);

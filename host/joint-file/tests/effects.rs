@@ -96,12 +96,12 @@ fn key_without_its_partner_is_rejected() {
         ("torque_ripple_periods_per_turn", "6", "torque_ripple_ratio"),
     ] {
         let refused = refusal(&[(key, value)]);
-        assert!(refused.contains(&format!("`{key}` says nothing without `{other}`")), "{refused}");
+        assert!(refused.contains(&format!("`{key}` has no effect without `{other}`")), "{refused}");
     }
     let refused = refusal(&[("motor_encoder.subdivisional_error_deg", "0.05")]);
     assert!(refused.contains("`subdivisional_periods_per_turn` is missing"), "{refused}");
     let refused = refusal(&[("motor_encoder.subdivisional_periods_per_turn", "4")]);
-    assert!(refused.contains("says nothing without an amplitude"), "{refused}");
+    assert!(refused.contains("has no effect without an amplitude"), "{refused}");
 }
 
 #[test]

@@ -39,7 +39,7 @@ const SLIPS: &[Row] = &[
     // Sizes.
     ("q1", "module_mm", Times(10.0), Warning, &["planet_equivalent_mass_kg", "foil", "module or radii are wrong"]),
     ("d2", "module_mm", Times(0.1), Error, &["in steel", "module or radii are wrong"]),
-    ("l1", "working_pressure_angle_deg", Set("44"), Warning, &["no pressure angle that teeth are cut with"]),
+    ("l1", "working_pressure_angle_deg", Set("44"), Warning, &["not a usual pressure angle of teeth"]),
     ("q1", "working_pressure_angle_deg", Set("40"), Warning, &["working_pressure_angle_deg", "20 is usual"]),
     // The stiffness behind the carrier.
     ("q1", "compliance.stiffness_N_m_per_rad", Set("3"), Error, &["deg", "typed in N m/arcmin", "10313 N m/rad"]),

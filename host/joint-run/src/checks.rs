@@ -61,7 +61,9 @@ fn twin(evidence: &Evidence<'_>) -> Vec<Check> {
     let wanted = TWIN_STEPS_MIN.min(evidence.ticks - evidence.ticks % decimation);
     let note = match &agreement.first {
         None => "digest of the whole state at every step, samples in every bit".to_owned(),
-        Some(first) => format!("first at tick {}: {} is {}, not {}", first.tick, first.field, first.board, first.twin),
+        Some(first) => {
+            format!("first difference at tick {}: {} is {}, not {}", first.tick, first.field, first.board, first.twin)
+        }
     };
     vec![
         count(
@@ -85,7 +87,7 @@ fn reference(evidence: &Evidence<'_>) -> Vec<Check> {
         format!("of the motion's standard deviation, over the first {:.2} of {:.2} s", comparison.until, comparison.of);
     let note = match (chaotic, comparison.until < comparison.of) {
         (true, _) => format!("{part}: the motion is chaotic, so no bound is applied"),
-        (false, true) => format!("{part}: later the motion is chaotic, or longer than is followed"),
+        (false, true) => format!("{part}: later the motion is chaotic, or beyond the compared time"),
         (false, false) => part,
     };
     let check = |quantity: &super::comparison::QuantityError| {
@@ -123,7 +125,7 @@ fn line(evidence: &Evidence<'_>) -> Vec<Check> {
 fn timing(evidence: &Evidence<'_>) -> Vec<Check> {
     let recording = evidence.recording;
     let (Some(statistics), Some(hello)) = (&recording.statistics, &recording.hello) else {
-        let why = "the board could not be asked any more";
+        let why = "the board no longer answers";
         return vec![Check::not_run("overruns", "", Bound::Exactly(0.0), why)];
     };
     let microseconds = |counts: u32| 1e6 * f64::from(counts) / f64::from(hello.timer_rate);

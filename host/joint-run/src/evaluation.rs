@@ -111,7 +111,7 @@ fn compare(
     finished: &FinishedRun<'_>,
     ratio: f64,
 ) -> Result<Comparison, String> {
-    let references = references.ok_or("not wanted: --no-reference")?;
+    let references = references.ok_or("skipped by --no-reference")?;
     if finished.outcome.is_err() {
         references.abandon();
         return Err("the run broke off".to_owned());

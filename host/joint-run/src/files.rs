@@ -36,13 +36,13 @@ fn write_to_temporary(failure: Failure, record: &RunRecord) -> Failure {
     let new = fs::create_dir(&folder).is_ok();
     let written = Folder::prepare(Some(&folder), "hil", "", &ALL_FILES).and_then(|folder| write_to(&folder, record));
     let help = if written.is_ok() || folder.join(RECORD).exists() {
-        format!("what was recorded is in {}; for the next run name another folder by --out DIR", folder.display())
+        format!("the recording is in {}; for the next run name another folder with --out DIR", folder.display())
     } else {
         if new {
             // The folder is useless; a leftover does no harm.
             let _ = fs::remove_dir_all(&folder);
         }
-        "free some space, or name another folder by --out DIR, and run again".to_owned()
+        "free some space, or name another folder with --out DIR, and run again".to_owned()
     };
     failure.with_help(help)
 }

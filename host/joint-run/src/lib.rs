@@ -59,10 +59,10 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
         (Ok(()), Ok(report)) => {
             output::print(&format!("report: {}\n", report.display()))?;
             let picture = request.picture.map_or(Ok(()), |path| page::write_picture(&record, path));
-            all_hold(&record.checks, "the report shows where the run departs from what was expected").and(picture)
+            all_hold(&record.checks, "the report shows the deviations from the expected run").and(picture)
         }
         (Err(failure), Ok(report)) => {
-            let kept = format!("what was recorded until tick {} is in {}", recording.last_tick(), report.display());
+            let kept = format!("the recording up to tick {} is in {}", recording.last_tick(), report.display());
             let help = failure.help().map_or_else(|| kept.clone(), |help| format!("{help}\n{kept}"));
             Err(failure.with_help(help))
         }

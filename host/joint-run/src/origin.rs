@@ -45,7 +45,9 @@ pub fn clock_text(clock: Clock) -> String {
         ClockSource::Crystal => "crystal and PLL, measured before use".to_owned(),
         ClockSource::Signal => "clock from elsewhere and PLL, measured before use".to_owned(),
         ClockSource::Internal => "internal oscillator and PLL".to_owned(),
-        ClockSource::DidNotStart => "internal oscillator and PLL: what the board file names did not start".to_owned(),
+        ClockSource::DidNotStart => {
+            "internal oscillator and PLL: the source in the board file did not start".to_owned()
+        }
         ClockSource::OtherFrequency { measured } => format!(
             "internal oscillator and PLL: what came from outside was measured as {:.2} MHz, which is not what the board file says",
             f64::from(measured) / 1e6

@@ -26,7 +26,8 @@ pub struct RunRequest<'a> {
     pub file: &'a Path,
     /// Board, and the line to it.
     pub line: &'a LineOptions,
-    /// Lockstep (the board waits for the host) or real time; by default lockstep on the emulated board, real time on a real one.
+    /// Lockstep (the board waits for the host) or real time; by default lockstep on the emulated board, real time on a
+    /// real one.
     pub mode: Option<Mode>,
     /// Step rate, part of the image [Hz].
     pub rate: u32,

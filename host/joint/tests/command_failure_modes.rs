@@ -186,7 +186,7 @@ fn ctrl_c_keeps_record() {
     let start = Instant::now();
     let ended = wait(child);
     assert!(start.elapsed() < LIVENESS);
-    ended.exited(130, &["stopped by the user", "what was recorded"]);
+    ended.exited(130, &["stopped by the user", "the recording"]);
     assert_eq!(record(&out)["completeness"]["state"], "interrupted");
 }
 

@@ -156,7 +156,7 @@ fn killed_emulator_named_record_kept() {
     let out = folder();
     let (child, emulator) = long_run(&out);
     kill(emulator);
-    end(child).refused(&["the emulator has ended", "what was recorded"]);
+    end(child).refused(&["the emulator has ended", "the recording"]);
     assert_incomplete(&out);
 }
 

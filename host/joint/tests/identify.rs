@@ -152,13 +152,13 @@ fn lost_samples_and_jitter_are_noted() {
     // 2 % of the samples are lost in thirty bursts of up to a hundred.
     let lost = |row: usize| row % 4000 < 160 * (row / 4000 % 3) / 3 && row > 4000;
     let arrived: Vec<_> = (0..rows.len()).filter(|row| !lost(*row)).map(|row| rows[row]).collect();
-    check("lost", &arrived, "samples lost in", 0.6);
+    check("lost", &arrived, "samples are lost in", 0.6);
     // Every other sample, irregularly one period early, with true time stamps.
     let early: Vec<_> = (1..rows.len() / 2).map(|pair| rows[2 * pair - usize::from(chance(pair) < 0.3)]).collect();
     check("early", &early, "interpolated to even times", 0.6);
     // Samples at even times, stamped by a host up to four tenths of a period late.
     let late: Vec<_> = (0..rows.len()).map(|row| (rows[row].0 + 4e-5 * chance(row), rows[row].1)).collect();
-    check("late", &late, "taken for even", 0.6);
+    check("late", &late, "treated as even", 0.6);
 }
 
 /// An inertia wrong by 5 % must not bias the stiffness.
@@ -251,7 +251,7 @@ fn equivalent_gear_needs_output_torque() {
     joint(&["identify", text(&without), "--joint", "c1", "--simulate"]).succeeded();
     let out = folder.path().join("nothing");
     joint(&["identify", text(&without), "--joint", "c1", "--out", text(&out)]).refused(&[
-        "not identified by its motor's torque",
+        "cannot be identified from the motor's torque",
         "output_torque_N_m",
         "--quasi-static",
     ]);
@@ -373,8 +373,8 @@ fn uninformative_logs_rejected() {
             cells[1] = (90_000 + row * 12).to_string();
         }
     })
-    .refused(&["motor_counts", "jumps", "line 42", "do not go on from where they were"]);
-    once(40, 2, "640.5").refused(&["output_counts", "no whole number", "line 42"]);
+    .refused(&["motor_counts", "jumps", "line 42", "the readings do not return"]);
+    once(40, 2, "640.5").refused(&["output_counts", "not a whole number", "line 42"]);
     log(&|_, cells| cells[1] = "5".into()).refused(&["the motor does not move", "0.0 counts"]);
     log(&|row, cells| cells[2] = (row * 14).to_string()).refused(&["do not turn together", "--output-bits"]);
     log(&|row, cells| {
@@ -474,9 +474,9 @@ fn mcap_log_equals_csv_log() {
         joint(&[&["identify", text(log)], options].concat()).refused(words);
     };
     refused(&cdr, &[], &["no topic has motor, output and torque", "/lab/drive", "position[0]", "--column"]);
-    refused(&cdr, &["--topic", "/lab/drives"], &["there is no topic `/lab/drives`", "was `/lab/drive` meant?"]);
-    refused(&plain, &["--topic", "/lab/drive"], &["no MCAP log", "leave --topic out"]);
-    refused(&plain, &["--column", "motor_count=raw"], &["`motor_count` is none of"]);
+    refused(&cdr, &["--topic", "/lab/drives"], &["there is no topic `/lab/drives`", "did you mean `/lab/drive`?"]);
+    refused(&plain, &["--topic", "/lab/drive"], &["not an MCAP log", "leave --topic out"]);
+    refused(&plain, &["--column", "motor_count=raw"], &["`motor_count` is not one of"]);
     refused(&plain, &["--column", "motor_counts=ra"], &["there is no column `ra`"]);
     let bytes = fs::read(&cdr).expect("written");
     fs::write(&cdr, &bytes[..bytes.len() / 2]).expect("written");
@@ -634,7 +634,7 @@ const WRONG: [Wrong; 30] = [
     Wrong {
         what: "a wrapped angle in turns",
         change: |row| row[1] = (row[1] / TAU).rem_euclid(1.0),
-        named: &["motor_angle_rad", "jumps", "an angle in turns begins anew so"],
+        named: &["motor_angle_rad", "jumps", "an angle in turns wraps by this jump"],
         ..ANGLES
     },
     Wrong {
@@ -671,7 +671,7 @@ const WRONG: [Wrong; 30] = [
         what: "wrapped counts of other bits",
         change: |row| row[1] = row[1].rem_euclid(16384.0),
         arguments: &["--motor-bits", "16"],
-        named: &["motor_counts", "an encoder of 14 bits begins anew so"],
+        named: &["motor_counts", "an encoder of 14 bits wraps by this jump"],
         ..COUNTS
     },
     Wrong { what: "amperes", change: |row| row[3] /= 0.06, named: &["the torque is a current, of 0.061"], ..COUNTS },
@@ -798,7 +798,11 @@ const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
     ),
     ("a torque with an offset", |rows| each(rows, |row| row[3] += 0.6), &["a constant torque of", "zero"]),
     ("a torque backwards in time", |rows| backwards(rows), &["drives", "time runs backwards"]),
-    ("an output that has slipped", |rows| slipped(rows, 100.0), &["do not stay together", "slipped"]),
+    (
+        "an output that has slipped",
+        |rows| slipped(rows, 100.0),
+        &["offset between motor and output changes", "slipped"],
+    ),
     ("an output that is late", |rows| late(rows, 20), &["the output's readings are 2.0", "older", "shift"]),
 ];
 
@@ -997,7 +1001,7 @@ fn units_from_options_or_map() {
     assert!((value / 40.0 - 1.0).abs() < 0.01, "{value}");
     let by_options = ["motor_angle=ENCODER_0_POSITION", "output_angle=ENCODER_1_POSITION", "motor_torque=TORQUE"];
     let columns: Vec<&str> = by_options.iter().flat_map(|column| ["--column", column]).collect();
-    joint(&[&common[..], &columns].concat()).refused(&["the unit of the column `motor_angle` is not said"]);
+    joint(&[&common[..], &columns].concat()).refused(&["the unit of the column `motor_angle` is not stated"]);
     let units = ["--unit", "motor_angle=turns", "--unit", "output_angle=turns", "--unit", "motor_torque=N_m@output"];
     joint(&[&common[..], &columns, &units].concat()).succeeded();
     // A wrong unit is detected from the log itself.

@@ -82,12 +82,13 @@ fn register_counts_are_unwrapped() {
         identify(folder, &[]).succeeded();
         let (found, told) = findings(folder);
         assert_equal_findings(&found, &truth);
-        let counts = format!("`motor_counts` is read as a register that begins anew after {} values", 1 << motor.0);
+        let counts = format!("`motor_counts` is read as a register that wraps after {} values", 1 << motor.0);
         assert!(told.contains(&counts), "{told}");
     }
     // Fewer counts than the set counts per turn: the message names the option with another value.
     write(folder, &plain.iter().map(|row| [row[0], row[1].rem_euclid(8192.0), row[2], row[3]]).collect::<Vec<_>>());
-    identify(folder, &["--motor-bits", "14"]).refused(&["an encoder of 13 bits begins anew so, and 14 bits are set"]);
+    identify(folder, &["--motor-bits", "14"])
+        .refused(&["an encoder of 13 bits wraps by this jump, but 14 bits are set"]);
 }
 
 /// Above 1 % the log is rejected.
@@ -114,7 +115,7 @@ fn bad_readings_up_to_one_percent_dropped() {
     }
     (100..count).step_by(50).for_each(|row| spoiled[row][1] += 8192.0);
     write(folder, &spoiled);
-    identify(folder, &[]).refused(&["readings of `motor_counts` (2.", "line 102", "up to 1 % are left out"]);
+    identify(folder, &[]).refused(&["readings of `motor_counts` (2.", "line 102", "up to 1 % are removed"]);
 }
 
 #[test]
@@ -173,8 +174,8 @@ fn preamble_and_incomplete_rows_skipped() {
     identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
     assert_contains_truth(&found);
-    assert!(told.contains("Lines 1 to 3 before the header passed over"), "{told}");
-    assert!(told.contains("rows were left out, since a value is missing: `motor_counts` is empty in"), "{told}");
+    assert!(told.contains("Lines 1 to 3 before the header skipped"), "{told}");
+    assert!(told.contains("rows were removed because a value is missing: `motor_counts` is empty in"), "{told}");
     // The observer is fed the same rows.
     let [path, out] = ["log.csv", "replay"].map(|name| folder.join(name));
     joint(&["replay", text(&path), "q1", "--out", text(&out)]).succeeded();

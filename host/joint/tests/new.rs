@@ -180,7 +180,7 @@ fn assumptions_have_measured_effect() {
 fn missing_values_named_without_terminal() {
     let place = folder();
     let name = place.path().join("elbow");
-    let lacks = ["lacks --lost-motion-arcmin, --stiffness-Nm-per-arcmin", "on a terminal they are asked for"];
+    let lacks = ["lacks --lost-motion-arcmin, --stiffness-Nm-per-arcmin", "a terminal session asks for them"];
     joint(&["new", text(&name), "--ratio", "9"]).refused(&lacks);
     assert_eq!(command::contents(place.path()), []);
 }
@@ -204,7 +204,11 @@ fn impossible_sheet_writes_nothing() {
     with(&["--efficiency", "94"]).refused(&["--efficiency: 94 is not between 0.1 and 1"]);
     with(&["--lost-motion-arcmin", "NaN"]).refused(&["--lost-motion-arcmin: NaN"]);
     with(&["--outer-diameter-mm", "20"]).refused(&["ring of 144 teeth does not fit 20 mm", "module 0.2"]);
-    with(&["--stiffness-Nm-per-arcmin", "6188"]).refused(&["alone give", "N m/arcmin", "the sheet says 6188"]);
+    with(&["--stiffness-Nm-per-arcmin", "6188"]).refused(&[
+        "alone have a stiffness of",
+        "N m/arcmin",
+        "the sheet states 6188",
+    ]);
     let of_option = "was not written; `no_load_torque_N_m` is --no-load-torque-Nm";
     with(&["--no-load-torque-Nm", "50"]).refused(&["no_load_torque_N_m", "typed in mN m", of_option]);
     let bad = place.path().join("my \"elbow\"");
@@ -310,7 +314,7 @@ fn existing_file_never_overwritten() {
     fs::write(&path, "mine").expect("a file");
     for name in ["elbow", "elbow.toml"] {
         let line = line(&place.path().join(name), ELBOW, &["--no-measure"]);
-        joint(&words(&line)).refused(&["elbow.toml is there already", "another name"]);
+        joint(&words(&line)).refused(&["elbow.toml exists already", "another name"]);
     }
     assert_eq!(fs::read_to_string(&path).expect("still there"), "mine");
 }
@@ -341,7 +345,7 @@ fn terminal_prompts_for_missing_values() {
     let given = ["--ratio", "9", "--lost-motion-arcmin", "15", "--rated-torque-Nm", "8"];
     let more = ["--rotor-inertia-kg-cm2", "0.32", "--no-load-torque-Nm", "0.05"];
     let said = said(&[&[text(&name)], &given[..], &more].concat(), b"soft\n1.8\n0.94\n");
-    for words in ["torsional stiffness at the output in N m/arcmin", "`soft` is not a number; once more", "efficiency"]
+    for words in ["torsional stiffness at the output in N m/arcmin", "`soft` is not a number; try again", "efficiency"]
     {
         assert!(said.contains(words), "{said}");
     }
@@ -358,7 +362,7 @@ fn terminal_prompts_for_kind_without_ratio() {
     let more = ["--rotor-inertia-kg-cm2", "1", "--no-load-torque-Nm", "0.1", "--efficiency", "0.85"];
     let said = said(&[&[text(&name)], &given[..], &more].concat(), b"worm\nequivalent\n59\n");
     assert!(
-        said.contains("`worm` is neither planetary nor equivalent; once more") && said.contains("gear ratio"),
+        said.contains("`worm` is neither planetary nor equivalent; try again") && said.contains("gear ratio"),
         "{said}"
     );
     let file = fs::read_to_string(place.path().join("wrist.toml")).expect("it was written");

@@ -316,7 +316,7 @@ fn multi_turn_register_unwrapped() {
     let plain = findings(&log(&|count| count, usize::MAX), &turns);
     let register = findings(&log(&|count| count.rem_euclid(65536.0), usize::MAX), &turns);
     assert_eq!(plain["quantities"], register["quantities"]);
-    assert!(register["assumptions"].to_string().contains("begins anew after 65536"), "{}", register["assumptions"]);
+    assert!(register["assumptions"].to_string().contains("wraps after 65536"), "{}", register["assumptions"]);
     let spoiled = findings(&log(&|count| count.rem_euclid(65536.0), 700), &turns);
     assert!(spoiled["assumptions"].to_string().contains("1 of 5100"), "{}", spoiled["assumptions"]);
     near(&spoiled, "width_by_direction_median", found(&plain, "width_by_direction_median").0, 0.01);
@@ -363,7 +363,7 @@ fn width_without_load_is_ambiguous() {
     let slow = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
     let record = findings(&slow.as_measured(), &MEASURED);
     near(&record, "width_by_direction_median", true_width(&slow, &record, 0.5), 0.06);
-    assert!(record["assumptions"][0].as_str().expect("text").contains("The load is not told"), "{record}");
+    assert!(record["assumptions"][0].as_str().expect("text").contains("The load is unknown"), "{record}");
 }
 
 #[test]
@@ -512,8 +512,12 @@ fn uninformative_logs_name_cause_and_remedy() {
     let one_sweep: String = measured.lines().take(550).map(|line| format!("{line}\n")).collect();
     refused(&one_sweep, &MEASURED, ["no reversal", "sweep slowly"]);
     let three_sweeps: String = measured.lines().take(1790).map(|line| format!("{line}\n")).collect();
-    refused(&three_sweeps, &MEASURED, ["too few passes: 1 backwards", "twice each way"]);
-    refused(&measured, &with(&["--half", "0..48", "--half", "50..64"]), ["in the second half", "twice each way"]);
+    refused(&three_sweeps, &MEASURED, ["too few passes: 1 backwards", "twice in each direction"]);
+    refused(
+        &measured,
+        &with(&["--half", "0..48", "--half", "50..64"]),
+        ["in the second half", "twice in each direction"],
+    );
     let fast = Sweeps { sweep: 0.3, ..quick };
     let [first, second] = fast.halves();
     refused(
@@ -530,14 +534,14 @@ fn uninformative_logs_name_cause_and_remedy() {
         .collect();
     refused(&other_sign, &MEASURED, ["ahead of the motor in both directions", "counts the other way"]);
     let against = with_torque(&quick, ",", |one| -3.0 * one.load + 0.5 * one.way);
-    refused(&against, &GEARED, ["ahead of the motor where the torque drives it", "counts the other way"]);
+    refused(&against, &GEARED, ["ahead of the motor while the torque drives it", "counts the other way"]);
     let mut falling: Vec<&str> = measured.lines().collect();
     falling.swap(300, 310);
     refused(&falling.join("\n"), &halves, ["time falls in line 302", "in the order"]);
     let mut spoiled: Vec<&str> = measured.lines().collect();
     spoiled[200] = "2.0 none 2000";
     let spoiled = spoiled.join("\n");
-    refused(&spoiled, &halves, ["line 201 has no finite number", "number with a point"]);
+    refused(&spoiled, &halves, ["line 201 has no finite number", "number with a decimal point"]);
     let wrapped: String = Sweeps { loads: [0.0; 2], ..quick }
         .record()
         .iter()
@@ -549,11 +553,11 @@ fn uninformative_logs_name_cause_and_remedy() {
     // Errors of the options.
     refused(&measured, &with(&["--gear-ratio", "6"]), ["--gear-ratio has no effect", "leave the option out"]);
     refused(&measured, &with(&["--half", "0..48"]), ["--half is given 1 times", "twice"]);
-    refused(&measured, &with(&["--half", "0..48", "--half", "40..90"]), ["halves overlap", "one way only"]);
+    refused(&measured, &with(&["--half", "0..48", "--half", "40..90"]), ["halves overlap", "one direction at a time"]);
     refused(&measured, &with(&["--half", "48..0"]), ["--half", "less than the second"]);
     refused(&measured, &with(&["--joint", "q1"]), ["--joint", "cannot be used with"]);
     refused(&measured, &with(&["--motor-bits", "14"]), ["--motor-bits", "cannot be used with"]);
     refused(&measured, &["--gear-ratio", "6"], ["--quasi-static", "required"]);
     refused(&measured, &MEASURED[1..], ["only --quasi-static reads a column", "add --quasi-static"]);
-    refused(&measured, &with(&["--topic", "/x"]), ["no MCAP log", "leave --topic out"]);
+    refused(&measured, &with(&["--topic", "/x"]), ["not an MCAP log", "leave --topic out"]);
 }

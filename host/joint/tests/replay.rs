@@ -128,7 +128,7 @@ fn log_without_counts_rejected() {
     let refused = joint(&["replay", text(&rival)]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.err.contains("of this run of `motor_pid` has no observer's samples"), "{}", refused.err);
-    assert!(refused.err.contains("take the log of its own controller"), "{}", refused.err);
+    assert!(refused.err.contains("use the log of its own controller"), "{}", refused.err);
 
     let csv = folder.path().join("log.csv");
     fs::write(&csv, "time_s,speed,motor_torque_N_m\n0,1,0\n0.0001,1,0\n").expect("room");
@@ -178,7 +178,7 @@ fn impossible_control_rate_not_recommended() {
         .expect("room");
     let refused = joint(&["replay", text(&log), "q1"]);
     assert_eq!(refused.code, Some(2));
-    assert!(refused.err.contains("its rows come at 500 Hz"), "{}", refused.err);
+    assert!(refused.err.contains("its rows have a rate of 500 Hz"), "{}", refused.err);
     assert!(refused.err.contains("must be from 1000 to 100000 Hz"), "{}", refused.err);
     assert!(!refused.err.contains("control_rate_Hz=500"), "{}", refused.err);
 }
@@ -192,7 +192,7 @@ fn wrong_row_rate_names_rate_key() {
         .expect("room");
     let refused = joint(&["replay", text(&log), "q1"]);
     assert_eq!(refused.code, Some(2));
-    let rates = "its rows come at 1000 Hz, the control periods of this joint at 10000 Hz";
+    let rates = "its rows have a rate of 1000 Hz, but the control rate of this joint is 10000 Hz";
     assert!(refused.err.contains(rates), "{}", refused.err);
     assert!(refused.err.contains("--set control_rate_Hz=1000"), "{}", refused.err);
     let out = folder.path().join("out");

@@ -59,7 +59,7 @@ pub fn remove_from_column(columns: &mut Columns, name: &str, count: f64, turn: O
     let places: Vec<String> = bad.iter().take(ROWS_NAMED).map(|row| columns.place(*row)).collect();
     let more = if bad.len() > ROWS_NAMED { ", ..." } else { "" };
     let note = format!(
-        "{} of {} readings of `{name}` ({:.2} %) jump away from the motion and come back: {}{more}",
+        "{} of {} readings of `{name}` ({:.2} %) jump away from the motion and return: {}{more}",
         bad.len(),
         values.len(),
         100.0 * share,
@@ -67,8 +67,8 @@ pub fn remove_from_column(columns: &mut Columns, name: &str, count: f64, turn: O
     );
     if share > BAD_SHARE_MAX {
         return Err(Failure::new(note).with_help(format!(
-            "up to {:.0} % are left out; beyond, look for flipped bits or lost frames: the encoder's cable and supply, its parity \
-             or checksum, and whether the column is what `{name}` stands for",
+            "up to {:.0} % are removed; with more, look for flipped bits or lost frames: the encoder's cable and \
+                 supply, its parity or checksum, and that the column is `{name}`",
             100.0 * BAD_SHARE_MAX
         )));
     }

@@ -72,12 +72,13 @@ impl ColumnMap {
         let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
         let Some(path) = map else { return Ok(all) };
         let map = parse_joint(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
-        let said = |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
-        all.columns.extend(map.columns.into_iter().filter(|(own, _)| !said(own)));
+        let is_on_command_line =
+            |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
+        all.columns.extend(map.columns.into_iter().filter(|(own, _)| !is_on_command_line(own)));
         // A column renamed with a unit in its name needs no unit of the map.
         let is_there = |unit: &Unit| all.columns.iter().any(|(own, _)| own == unit.name());
-        let told = |unit: &Unit| units.iter().any(|other| other.name() == unit.name());
-        all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !told(unit)));
+        let has_stated_unit = |unit: &Unit| units.iter().any(|other| other.name() == unit.name());
+        all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !has_stated_unit(unit)));
         Ok(all)
     }
 }
@@ -90,7 +91,7 @@ pub fn parse_renaming(text: &str) -> Result<(String, String), String> {
         return Ok((own.to_owned(), theirs.to_owned()));
     }
     let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).collect();
-    Err(format!("`{own}` is none of {}", names.join(", ")))
+    Err(format!("`{own}` is not one of {}", names.join(", ")))
 }
 
 /// Joints of a map in order of their names; empty for a map of one joint.
@@ -114,8 +115,8 @@ fn text(path: &Path) -> Outcome<String> {
 
 fn refused(why: &str) -> Failure {
     Failure::new(why.to_owned()).with_help(
-        "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"; [joints.NAME.columns] and \
-         [joints.NAME.units] those of one of several joints",
+        "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"; \
+             [joints.NAME.columns] and [joints.NAME.units] define one of several joints",
     )
 }
 
@@ -199,9 +200,9 @@ mod tests {
     #[test]
     fn invalid_map_is_rejected_with_place() {
         for (text, why) in [
-            ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is none of"),
+            ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is not one of"),
             ("[columns]\nmotor_angle = 3\n", "line 2"),
-            ("[columns]\n[units]\nmotor_angle = \"grad\"\n", "[units]: `grad` is none of"),
+            ("[columns]\n[units]\nmotor_angle = \"grad\"\n", "[units]: `grad` is not one of"),
             ("[column]\n", "line 1"),
             ("", "columns"),
         ] {

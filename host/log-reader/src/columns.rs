@@ -3,8 +3,8 @@
 use report::failure::{Failure, Outcome};
 
 /// Help on the first line of a log.
-pub const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
-                           was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
+pub const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it was \
+     measured, output_torque_N_m; --column motor_counts=NAME reads another name";
 
 /// Names of each column: the canonical one, and its aliases in logs.
 pub const KNOWN: [(&str, &[&str]); 10] = [
@@ -126,7 +126,7 @@ impl Columns {
             return failure;
         }
         let help = failure.full_help().map_or_else(String::new, |help| format!("{help}\n"));
-        failure.with_help(format!("{help}before that: {}", self.notes.join(" ")))
+        failure.with_help(format!("{help}changes to the rows: {}", self.notes.join(" ")))
     }
 
     /// Keeps the rows marked true.
@@ -194,12 +194,12 @@ impl Columns {
         let empty: Vec<String> = places.iter().filter_map(empty).collect();
         if left == 0 {
             return Err(Failure::new(format!("no row has all values: of {rows} rows {}", empty.join(", "))).with_help(
-                "each of them is logged at times of its own: log motor, output and torque in one message, or export them on common \
-                 times; values are not carried over from other times, which would feign lost motion",
+                "each quantity is logged at its own times: log motor, output and torque in one message, or export \
+                     them at common times; values from other times are not used, as they would mimic lost motion",
             ));
         }
         self.add_note(format!(
-            "{} of {rows} rows were left out, since a value is missing: {}.",
+            "{} of {rows} rows were removed because a value is missing: {}.",
             rows - left,
             empty.join(", ")
         ));
@@ -302,20 +302,20 @@ impl Columns {
                 "an output alone shows neither lost motion (an upper bound at most), nor stiffness, nor an error map"
             }
             _ => {
-                "a motor alone shows no lost motion, stiffness or error map: where the output stands while the motor \
-                 crosses the gap is not in it"
+                "a motor alone shows no lost motion, stiffness or error map, as it does not show the output while the \
+                     motor crosses the gap"
             }
         };
         let difference = if what == "motor" { format!(" (in a slow log {DIFFERENCE})") } else { String::new() };
         Failure::new(format!("there is no column for the {what} ({there} are there): {tells}")).with_help(format!(
-            "name it {counts} or {what}_angle_rad{difference}, or take a column of another name or number: \
-             --column {counts}=NAME"
+            "name it {counts} or {what}_angle_rad{difference}, or read a column of another name or number: \
+                 --column {counts}=NAME"
         ))
     }
 
     fn missing(&self, wanted: &str) -> Failure {
         let near = joint_file::nearest(wanted, self.names());
-        let there = near.map_or(String::new(), |near| format!("; was `{near}` meant for it?"));
+        let there = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         Failure::new(format!("there is no column `{wanted}`{there}")).with_help(HEADER_HELP)
     }
 
@@ -337,6 +337,6 @@ impl Columns {
 
     fn not_finite(&self, row: usize, name: &str) -> Failure {
         Failure::new(format!("{} has no finite number for `{name}`", self.place(row)))
-            .with_help("write a number with a point in every row, or cut the log there")
+            .with_help("write a number with a decimal point in every row, or cut the log there")
     }
 }

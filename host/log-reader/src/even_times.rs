@@ -71,7 +71,7 @@ impl EvenTimes {
                 ESTIMATE.write(steps[first]),
                 ESTIMATE.write(usual)
             ))
-            .with_help("record so that every sample arrives, or cut the log to where they do"));
+            .with_help("record without losses, or cut the log to a part without losses"));
         }
         let steps: Vec<f64> = std::iter::once(1.0)
             .chain(steps.iter().map(|&step| if is_hole(step) { (step / period).round() } else { 1.0 }))
@@ -164,7 +164,7 @@ impl EvenTimes {
             Self { note: stamped.note(jitter, Some("interpolated to even times by their stamps")), ..stamped }
         } else {
             Self {
-                note: self.note(jitter, Some("taken for even: the motor's motion is as smooth so as by the stamps")),
+                note: self.note(jitter, Some("treated as even, as the motor's motion is no smoother by the stamps")),
                 ..self
             }
         }
@@ -174,8 +174,10 @@ impl EvenTimes {
     fn note(&self, jitter: f64, done: Option<&str>) -> Option<String> {
         let lost = self.lost.last().copied().unwrap_or_default();
         let holes = self.steps.iter().filter(|step| **step > 1.0).count();
-        let of_holes =
-            format!("{lost} of {} samples lost in {holes} holes: nothing near them is used.", self.sources.len());
+        let of_holes = format!(
+            "{lost} of {} samples are lost in {holes} holes; moments near them are not used.",
+            self.sources.len()
+        );
         let of_stamps = |done: &str| format!("Times between samples vary by {:.1} % (rms): {done}.", 100.0 * jitter);
         let parts: Vec<String> = (lost > 0).then_some(of_holes).into_iter().chain(done.map(of_stamps)).collect();
         (!parts.is_empty()).then(|| parts.join(" "))
@@ -264,7 +266,7 @@ mod tests {
     fn jittered_stamps_are_ignored() {
         let motion: Vec<f64> = (0..2000).map(|row| self::motion(row as f64 * PERIOD)).collect();
         let times = even(&jittering(2000), &motion);
-        assert!(times.note.as_deref().is_some_and(|note| note.contains("taken for even")), "{:?}", times.note);
+        assert!(times.note.as_deref().is_some_and(|note| note.contains("treated as even")), "{:?}", times.note);
         assert_eq!(times.resample(&motion), motion);
     }
 

@@ -67,7 +67,7 @@ impl LogFile {
             ];
             mcap_log::read(&self.bytes, topic, has_what_is_wanted, has_counts)
         } else if let Some(topic) = topic {
-            let message = format!("it is no MCAP log, so it has no topic `{topic}`");
+            let message = format!("it is not an MCAP log, so it has no topic `{topic}`");
             Err(Failure::new(message).with_help("leave --topic out"))
         } else {
             let text = std::str::from_utf8(&self.bytes)
@@ -82,13 +82,13 @@ impl LogFile {
 
 fn unreadable(path: &Path, why: &str) -> Failure {
     Failure::new(format!("cannot read the log {}: {why}", path.display()))
-        .with_help("`joint identify LOG --simulate` makes one without hardware")
+        .with_help("`joint identify LOG --simulate` makes a log without hardware")
 }
 
 fn under_known_names(columns: Columns, map: &ColumnMap, ratio: f64) -> Outcome<Columns> {
     // Without a header the columns' names are their numbers.
     if map.columns.is_empty() && columns.names().all(|name| name.parse::<usize>().is_ok()) {
-        let message = format!("the log has no header: which of its {} columns are what?", columns.names().count());
+        let message = format!("the log has no header that names its {} columns", columns.names().count());
         return Err(Failure::new(message).with_help(
             "name them by their numbers: --column time_s=1 --column motor_counts=2 --column output_counts=3",
         ));

@@ -17,7 +17,8 @@ use report::failure::{Failure, Outcome};
 const MAGIC: &[u8] = b"\x89MCAP";
 /// Topics and fields named in a message at most.
 const NAMES_SHOWN: usize = 12;
-/// Memory of columns over the file's size, plus MEMORY_BASE bytes: other topics than a joint's may be packed much tighter.
+/// Memory of columns over the file's size, plus MEMORY_BASE bytes: other topics than a joint's may be packed much
+/// tighter.
 const MEMORY_FACTOR_MAX: u64 = 256;
 const MEMORY_BASE: u64 = 64 << 20;
 
@@ -52,7 +53,9 @@ impl Reader {
                     Err(why) => Self::Unknown(why.clone()),
                 }
             }
-            (encoding, form) => Self::Unknown(format!("its messages are `{encoding}` by `{form}`")),
+            (encoding, form) => {
+                Self::Unknown(format!("its messages are encoded as `{encoding}` and defined as `{form}`"))
+            }
         }
     }
 
@@ -108,10 +111,8 @@ pub fn read(
         let before = known.columns.size();
         known.add_message(message);
         room = room.checked_sub(known.columns.size() - before).ok_or_else(|| {
-            Failure::new(format!(
-                "the numbers of its topics take more than {MEMORY_FACTOR_MAX} times the log's own size"
-            ))
-            .with_help("name the topic with --topic, or write a log of that topic alone")
+            Failure::new(format!("the numbers of its topics need more than {MEMORY_FACTOR_MAX} times the log's size"))
+                .with_help("name the topic with --topic, or write a log of this topic alone")
         })?;
         Ok(())
     };
@@ -125,7 +126,7 @@ pub fn read(
     let chosen = match topic {
         Some(name) => topics.remove(name).ok_or_else(|| {
             let near = joint_file::nearest(name, topics.keys().map(String::as_str));
-            let meant = near.map_or(String::new(), |near| format!("; was `{near}` meant?"));
+            let meant = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             Failure::new(format!("there is no topic `{name}`{meant}")).with_help(list(&topics))
         })?,
         None => {
@@ -214,7 +215,7 @@ impl Topic {
         match self.defect {
             None => Ok(self.columns),
             Some(why) => Err(Failure::new(format!("topic `{}` cannot be read: {why}", self.name))
-                .with_help("ROS 2 messages in CDR and JSON are understood; export anything else as CSV")),
+                .with_help("ROS 2 messages in CDR and JSON are supported; export other messages as CSV")),
         }
     }
 }

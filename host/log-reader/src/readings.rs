@@ -83,12 +83,12 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, t
     if name == names[0] {
         let turn = counts_per_turn as f64;
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
-            return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))
-                .with_help("angles are understood in a column such as motor_angle_rad"));
+            return Err(Failure::new(format!("{} of `{name}` is not a whole number of counts", columns.place(line)))
+                .with_help("angles belong in a column such as motor_angle_rad"));
         }
         if let Some(register) = Register::find(&values, Some(turn)) {
             register.join(&mut values, |row| times.periods_before(row));
-            register.note(name, Some(turn)).into_iter().for_each(|told| columns.add_note(told));
+            register.note(name, Some(turn)).into_iter().for_each(|note| columns.add_note(note));
         }
         let steps = times.per_period_steps(values.windows(2).map(|pair| pair[1] - pair[0]).collect());
         check_steps(&steps, &Encoder { what, name, counts_per_turn, turn, count: 1.0 }, columns)?;
@@ -106,7 +106,7 @@ pub fn missing_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
     let (what, option, of) = if names == MOTOR {
         ("motor", "--output-only", "a joint without an encoder at the motor")
     } else {
-        ("output", "--output-locked", "a joint whose output is held")
+        ("output", "--output-locked", "a joint with a clamped output")
     };
     let failure = columns.missing_encoder(what);
     let help = failure.full_help().unwrap_or_default();
@@ -140,7 +140,7 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
     if same > (STALE_SHARE_MAX * moving as f64) as usize && moving > 0 {
         let every = (moving as f64 / (moving - same).max(1) as f64).round();
         return Err(Failure::new(format!(
-            "`{name}` brings a new reading in about one of {every} samples, and repeats it in between"
+            "`{name}` has a new reading in about one of {every} samples, and repeats it in between"
         ))
         .with_help("keep the rows with new readings only, or log as often as the encoder is read"));
     }
@@ -156,15 +156,15 @@ impl Encoder<'_> {
         if self.count < 1.0 {
             let units = [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")];
             if let Some((_, unit)) = units.iter().find(|(turn, _)| whole(*turn)) {
-                return format!("an angle in {unit} begins anew so");
+                return format!("an angle in {unit} wraps by this jump");
             }
         } else if whole(set) {
             return format!("a turn of the {resolution} that are set was lost or counted twice: cut the log there");
         } else if let Some(found) = (8..=32).find(|bits| whole(f64::from(*bits).exp2())) {
             return if f64::from(found).exp2() < set {
                 format!(
-                    "an encoder of {found} bits begins anew so, and {resolution} are set: if a turn has 2^{found} counts, state \
-                     --{what}-bits {found}"
+                    "an encoder of {found} bits wraps by this jump, but {resolution} are set: if a turn has 2^{found} \
+                         counts, state --{what}-bits {found}"
                 )
             } else {
                 format!(
@@ -175,8 +175,8 @@ impl Encoder<'_> {
             };
         }
         format!(
-            "readings do not go on from where they were, so that it is none that was lost or corrupted alone: cut the log there, or \
-             check the unit of `{name}` and its resolution of {resolution}"
+            "the readings do not return, so that the jump is no single lost or corrupted reading: cut the log \
+                 there, or check the unit of `{name}` and its resolution of {resolution}"
         )
     }
 }

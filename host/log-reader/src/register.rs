@@ -73,7 +73,7 @@ impl Register {
         let turns =
             turn.map_or_else(String::new, |turn| format!(", {} turns of the encoder", ESTIMATE.write(counts / turn)));
         Some(format!(
-            "`{name}` is read as a register that begins anew after {} values{turns}: from {} on.",
+            "`{name}` is read as a register that wraps after {} values{turns}, starting at {}.",
             TYPED.write(counts),
             TYPED.write(least)
         ))

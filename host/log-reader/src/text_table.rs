@@ -74,12 +74,12 @@ pub fn columns(text: &str) -> Outcome<Columns> {
     let before: Vec<usize> = all.map(|(line, _)| line).take_while(|line| *line < head_line).collect();
     if let [first, .., last] | [first @ last] = before[..] {
         let lines = if first == last { format!("Line {first}") } else { format!("Lines {first} to {last}") };
-        columns.add_note(format!("{lines} before the header passed over."));
+        columns.add_note(format!("{lines} before the header skipped."));
     }
     let has_numbers = |line: &str| separator.cells(line).any(|cell| separator.number(cell).is_some());
     let is_full = |line: &str| separator.cells(line).all(|cell| !cell.is_empty());
     if has_names && lines.len() > body + 1 && !has_numbers(lines[body].1) && is_full(lines[body].1) {
-        columns.add_note(format!("Line {} below the header has no number: passed over.", lines[body].0));
+        columns.add_note(format!("Line {} below the header has no number and is skipped.", lines[body].0));
         body += 1;
     }
     let count = row.len();
@@ -99,7 +99,7 @@ pub fn columns(text: &str) -> Outcome<Columns> {
         columns.push(*line, &row);
     }
     if columns.names().next().is_none() {
-        return Err(Failure::new("the log has a header and no rows").with_help("a row for each sample"));
+        return Err(Failure::new("the log has a header but no rows").with_help("write a row per sample"));
     }
     Ok(columns)
 }

@@ -17,10 +17,10 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     if repeats == 0 {
         return Ok(());
     }
-    let told = format!("{repeats} of {} rows have the time of the row before", time.len());
+    let note = format!("{repeats} of {} rows have the time of the row before", time.len());
     if let Some(counted) = by_periods(columns, &time) {
         columns.set(TIMES[0], counted);
-        columns.add_note(format!("{told}: times are those of the control periods that `{PERIOD}` counts."));
+        columns.add_note(format!("{note}: times are those of the control periods that `{PERIOD}` counts."));
         return Ok(());
     }
     let used = columns.first_of(&TIMES)?.map_or(TIMES[0], |(name, _)| name);
@@ -28,7 +28,7 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
         let Some((_, values)) = columns.first_of(&[other])? else { continue };
         if values.windows(2).all(|pair| pair[1] > pair[0]) {
             columns.hide(used);
-            columns.add_note(format!("{told} in `{used}`: times are those of `{other}`."));
+            columns.add_note(format!("{note} in `{used}`: times are those of `{other}`."));
             return Ok(());
         }
     }
@@ -36,18 +36,20 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     let identical = keep.iter().filter(|keep| !**keep).count();
     if identical == repeats {
         columns.retain_rows(&keep);
-        columns.add_note(format!("{told} and all its values: left out."));
+        columns.add_note(format!("{note} and all its values: left out."));
         return Ok(());
     }
     let first = (1..time.len()).find(|row| time[*row] == time[row - 1] && keep[*row]).unwrap_or_default();
     let has_counter = columns.column(PERIOD).is_some();
-    Err(Failure::new(format!("the time does not rise in {}: {told}, with other values", columns.place(first))).with_help(
+    Err(Failure::new(format!("the time does not rise in {}: {note}, with other values", columns.place(first))).with_help(
         if has_counter {
-            format!("`{PERIOD}` does not count control periods evenly by that time: log the controller's own clock as time_us")
+            format!("`{PERIOD}` does not count control periods evenly against the time: log the controller's own clock as \
+                 time_us")
         } else {
             format!(
-                "log the number of the control period and name its column, --column {PERIOD}=NAME, or the controller's own clock \
-                 (--column time_us=NAME); stamps of a host that receives several samples at once tell no times"
+                "log the number of the control period and name its column, --column {PERIOD}=NAME, or the \
+                     controller's own clock (--column time_us=NAME); the stamps of a host that receives several samples \
+                     at once are not the samples' times"
             )
         },
     ))

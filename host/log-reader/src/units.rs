@@ -77,7 +77,7 @@ pub fn parse(text: &str) -> Result<Unit, String> {
     let names: Vec<&str> = bare_names().collect();
     let (name, unit) = text.split_once('=').ok_or("write QUANTITY=UNIT, as in motor_angle=turns")?;
     let Some(place) = names.iter().position(|known| *known == name) else {
-        return Err(format!("`{name}` is none of {}", names.join(", ")));
+        return Err(format!("`{name}` is not one of {}", names.join(", ")));
     };
     let quantity = &QUANTITIES[place];
     let (unit, at_output) = match (unit.strip_suffix(AT_OUTPUT), quantity.over_gears) {
@@ -87,12 +87,12 @@ pub fn parse(text: &str) -> Result<Unit, String> {
     };
     let (times, unit) = match unit.split_once('*') {
         None => (1.0, unit),
-        Some((times, unit)) => (times.parse().map_err(|_| format!("`{times}` is no number: write 0.06*N_m"))?, unit),
+        Some((times, unit)) => (times.parse().map_err(|_| format!("`{times}` is not a number: write 0.06*N_m"))?, unit),
     };
     let known: Vec<&str> = quantity.units.iter().map(|(name, _)| *name).collect();
     let Some((_, factor)) = quantity.units.iter().find(|(name, _)| *name == unit) else {
         let current = if unit == "A" { "; for a current write its constant in N m/A: 0.06*N_m" } else { "" };
-        return Err(format!("`{unit}` is none of {}{current}", known.join(", ")));
+        return Err(format!("`{unit}` is not one of {}{current}", known.join(", ")));
     };
     if !f64::is_normal(times) {
         return Err("the number before the * must be finite and not zero".to_owned());
@@ -103,25 +103,25 @@ pub fn parse(text: &str) -> Result<Unit, String> {
 /// Converts columns with bare names to canonical columns in SI; `ratio` is motor over output.
 pub fn convert(mut columns: Columns, units: &[Unit], ratio: f64) -> Outcome<Columns> {
     for (place, Quantity { name, column, over_gears, .. }) in QUANTITIES.iter().enumerate() {
-        let mut told = units.iter().filter(|unit| unit.quantity == place);
+        let mut stated_units = units.iter().filter(|unit| unit.quantity == place);
         let has = |wanted: &str| columns.names().any(|name| name == wanted);
-        match (told.next(), has(name)) {
+        match (stated_units.next(), has(name)) {
             (None, false) => {}
             (None, true) if has(column) => {}
             (None, true) => {
-                return Err(Failure::new(format!("the unit of the column `{name}` is not said"))
-                    .with_help(format!("say it: --unit {name}={}, or as it is", QUANTITIES[place].units[0].0)));
+                return Err(Failure::new(format!("the unit of the column `{name}` is not stated"))
+                    .with_help(format!("state it, such as --unit {name}={}", QUANTITIES[place].units[0].0)));
             }
             (Some(_), false) => {
                 let help = if has(column) {
-                    format!("`{column}` says its unit: if that is another one, add --column {name}={column}")
+                    format!("`{column}` states its unit: if it is another unit, add --column {name}={column}")
                 } else {
-                    format!("add --column {name}=NAME for the column that it is for")
+                    format!("add --column {name}=NAME for its column")
                 };
                 return Err(Failure::new(format!("--unit {name}: there is no column `{name}`")).with_help(help));
             }
             (Some(unit), true) => {
-                if told.next().is_some() {
+                if stated_units.next().is_some() {
                     return Err(Failure::new(format!("--unit {name} is given twice")).with_help("give it once"));
                 }
                 let gears = if unit.at_output { ratio.powi(over_gears.unwrap_or_default()) } else { 1.0 };
@@ -156,19 +156,19 @@ mod tests {
     fn missing_or_unused_unit_is_rejected() {
         let torque = parse("motor_torque=N_cm").expect("a unit");
         let refused = convert(columns(), &[torque], 6.0).expect_err("no unit of the angle");
-        assert_eq!(refused.message(), "the unit of the column `motor_angle` is not said");
+        assert_eq!(refused.message(), "the unit of the column `motor_angle` is not stated");
         let turns = parse("output_angle=turns").expect("a unit");
         let both = [torque, parse("motor_angle=deg").expect("a unit"), turns];
         let refused = convert(columns(), &both, 6.0).expect_err("no output");
         assert_eq!(refused.message(), "--unit output_angle: there is no column `output_angle`");
         for (text, why) in [
             ("motor_angle", "QUANTITY=UNIT"),
-            ("speed=rad", "none of time, motor_angle"),
+            ("speed=rad", "one of time, motor_angle"),
             ("motor_torque=A", "0.06*N_m"),
             ("output_angle=turns@output", "motor's"),
-            ("motor_angle=x*rad", "no number"),
+            ("motor_angle=x*rad", "not a number"),
             ("motor_angle=0*rad", "not zero"),
-            ("motor_angle=grad", "none of rad, mrad, deg, arcmin, turns"),
+            ("motor_angle=grad", "one of rad, mrad, deg, arcmin, turns"),
         ] {
             let refused = parse(text).expect_err(text);
             assert!(refused.contains(why), "{text}: {refused}");

@@ -8,18 +8,16 @@ use log_reader::units::{self, Unit};
 
 /// Arguments of `joint replay`.
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    after_help = "LOG is an MCAP log that `joint hil TEST` wrote, which needs nothing else, or any log that `joint identify` reads:
+#[command(after_help = "LOG is an MCAP log of `joint hil TEST`, complete in itself, or any log for `joint identify`:
   time_s, motor_counts, output_counts, motor_torque_N_m, a row each control period.
 
 Examples:
   joint replay joint-out/hil/tests/t2/runs/t2-seed1-preview.mcap       does the observer repeat the run, in every bit?
-  joint replay joint-out/hil/tests/t2/runs/t2-seed1-preview.mcap q1    what would the observer of the preset have said?
-  joint replay my_log.csv my_joint.toml --out results                  what does the observer make of a recorded test?
+  joint replay joint-out/hil/tests/t2/runs/t2-seed1-preview.mcap q1    what would the observer of the preset have estimated?
+  joint replay my_log.csv my_joint.toml --out results                  the observer's estimates of a recorded test
   joint replay drive.csv my_joint.toml --map moteus --set control_rate_Hz=1000
 
-Exit code: 0 if a run is repeated, or of a log that is none; 1 if a run is not repeated; 2 for bad input or a wiring that is not the joint file's, 130 after Ctrl-C."
-)]
+Exit code: 0 if a run is repeated, or for a log of no run; 1 if a run is not repeated; 2 for bad input or a wiring that contradicts the joint file, 130 after Ctrl-C.")]
 pub struct ReplayArguments {
     /// Log of a run, or a recorded test
     #[arg(value_name = "LOG")]

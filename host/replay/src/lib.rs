@@ -57,7 +57,7 @@ impl InitialObserver {
     fn observer(&self) -> Outcome<Observer<'_, f32, MAPPED>> {
         let mut observer = Observer::new(&self.tables);
         if let Some(memory) = &self.memory {
-            observer.load(memory).map_err(|error| Failure::new(format!("what the observer began with: {error}")))?;
+            observer.load(memory).map_err(|error| Failure::new(format!("the observer's initial memory: {error}")))?;
         }
         Ok(observer)
     }

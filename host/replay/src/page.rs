@@ -21,7 +21,7 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
     });
     let line = match repeats {
         Some(repeats) => format!("{log}: {}", repeats.sentence()),
-        None => format!("{log}: what the observer of joint {joint} makes of it"),
+        None => format!("{log}: estimates of the observer of joint {joint}"),
     };
     let mut blocks = Vec::new();
     if let Some(difference) = repeats.as_ref().and_then(|repeats| repeats.first_difference.as_ref()) {
@@ -107,7 +107,7 @@ fn differences(of: &Difference) -> Block {
         let cells = of.values.iter().take(VALUES_SHOWN).map(|value| {
             row([text(&value.name), text(format!("{:e}", value.recorded)), text(format!("{:e}", value.replayed))])
         });
-        blocks.push(Block::Lead(format!("The first values that were logged after it, at t = {time:.4} s:").into()));
+        blocks.push(Block::Lead(format!("The first logged values after it, at t = {time:.4} s:").into()));
         blocks.push(table(columns, cells.collect()));
     }
     section_bare("The first difference", blocks)

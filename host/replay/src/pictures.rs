@@ -45,7 +45,7 @@ pub fn all(pass: &Pass<'_>, record: &ReplayRecord) -> Vec<Figure> {
 fn view(points: &[Point], range: (f64, f64), title: String) -> Figure {
     let span = range.1 - range.0;
     let half = points.last().map_or(0.0, |point| 2.0 * point.half_backlash.value);
-    let band = Mark::Band { range: (-half, half), label: "free gap as learnt (4b)".into() };
+    let band = Mark::Band { range: (-half, half), label: "estimated free gap (4b)".into() };
     let gap = interval(points, |point| point.gap, Ink::First, Some(3.0 * half));
     let panels = vec![
         Panel::lines("Gap coordinate", Unit::of_length(2.0 * half), std::iter::once(band).chain(gap).collect()),
@@ -53,7 +53,7 @@ fn view(points: &[Point], range: (f64, f64), title: String) -> Figure {
         Panel {
             height: 170,
             ..Panel::lines(
-                "Half-backlash as learnt",
+                "Estimated half-backlash",
                 Unit::of_length(half),
                 interval(points, |point| point.half_backlash, Ink::Second, None),
             )

@@ -33,13 +33,12 @@ impl Recorded {
         if let Some((row, period)) = (0..).zip(&periods).find(|(row, period)| row != *period) {
             let message = match row {
                 0 => {
-                    format!("the run begins at control period {period}: what its observer had seen before is not in it")
+                    format!("the run begins at control period {period}: the log lacks the observer's earlier samples")
                 }
                 _ => format!("control periods {row} to {} of the run are missing", period.saturating_sub(1)),
             };
-            return Err(Failure::new(message).with_help(
-                "take the whole log, or name the joint too, and see what an observer makes of what is left",
-            ));
+            return Err(Failure::new(message)
+                .with_help("use the whole log; or name the joint too, to estimate from the rest of the log"));
         }
         let values = file.topic(log_file::TOPIC)?;
         let rows = whole(&values, PERIOD)?.into_iter().zip(0..).collect();

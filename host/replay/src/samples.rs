@@ -71,8 +71,11 @@ impl ReplaySamples {
             let (_, values) = columns.named(&[name])?;
             let bad = |value: &f64| value.fract() != 0.0 || !(0.0..=f64::from(u32::MAX)).contains(value);
             if let Some(row) = values.iter().position(bad) {
-                return Err(Failure::new(format!("{} of `{name}` is no whole number of 32 bits", columns.place(row)))
-                    .with_help("take the log as `joint hil` wrote it"));
+                return Err(Failure::new(format!(
+                    "{} of `{name}` is not a whole number of 32 bits",
+                    columns.place(row)
+                ))
+                .with_help("use the log as written by `joint hil`"));
             }
             Ok(values.into_iter().map(|value| value as u32).collect())
         };
@@ -146,12 +149,12 @@ impl ReplaySamples {
         steps.sort_by(f64::total_cmp);
         let Some(usual) = steps.get(steps.len() / 2) else {
             return Err(Failure::new(format!("there are only {} samples", self.time.len()))
-                .with_help("an observer follows a motion over many control periods"));
+                .with_help("an observer needs a motion over many control periods"));
         };
         if (usual / self.period - 1.0).abs() > RATE_TOLERANCE {
             let rate = 1.0 / usual;
             let message = format!(
-                "its rows come at {rate:.0} Hz, the control periods of this joint at {} Hz",
+                "its rows have a rate of {rate:.0} Hz, but the control rate of this joint is {} Hz",
                 settings.control_rate
             );
             return Err(Failure::new(message).with_help(match refuses(rate.round()) {
@@ -159,8 +162,8 @@ impl ReplaySamples {
                     format!("log every control period; if the controller runs at that rate, add --set control_rate_Hz={rate:.0}")
                 }
                 Some(why) => format!(
-                    "log every control period: an observer at the rate of these rows is refused ({}); of a slow log `joint identify \
-                     --quasi-static` finds lost motion and friction",
+                    "log every control period: an observer at the rate of these rows cannot be designed ({}); for a slow \
+                         log `joint identify --quasi-static` finds lost motion and friction",
                     why.message()
                 ),
             }));
@@ -187,8 +190,8 @@ impl ReplaySamples {
 /// Failure for a run's log without an observer's samples.
 pub fn missing_samples(controller: &str) -> Failure {
     Failure::new(format!("the log of this run of `{controller}` has no observer's samples")).with_help(
-        "they are logged of the tested controller, not of rivals, and not by older versions: run the test again, and take \
-         the log of its own controller, if that has an observer",
+        "only the tested controller logs them, not its rivals nor older versions: run the test again, and use \
+             the log of its own controller, if it has an observer",
     )
 }
 
@@ -208,8 +211,8 @@ fn counts(columns: &Columns, what: &str, encoder: EncoderSettings) -> Outcome<(V
     for (row, value) in values.iter().enumerate() {
         let counts = if is_angle { (value * turn / TAU).floor() } else { *value };
         if counts.fract() != 0.0 || counts.abs() > 9e15 {
-            return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(row)))
-                .with_help(format!("angles are understood in a column such as {what}_angle_rad")));
+            return Err(Failure::new(format!("{} of `{name}` is not a whole number of counts", columns.place(row)))
+                .with_help(format!("angles belong in a column such as {what}_angle_rad")));
         }
         raw.push((counts as i64).rem_euclid(range) as u32);
     }

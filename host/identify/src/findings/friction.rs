@@ -70,7 +70,7 @@ pub(super) fn frictions(
     let mut findings = vec![motor_dry_found.not_negative()];
     let narrower = excess.half < prior.torque_error;
     let key = "drive_train.torque_constant_error_ratio";
-    let why = "flanks must land so hard that the motor's inertia shows";
+    let why = "the flanks must land hard enough for the motor's inertia to have an effect";
     let share = finding("true torque over the logged one, less 1", "-", key, excess).only_if(narrower, why);
     findings.push(share.with_note("by the inertias of the joint file"));
     if let Some(balance) = &motor {

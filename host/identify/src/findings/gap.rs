@@ -37,9 +37,9 @@ pub(super) fn gap_and_compliance(
     let has_gap = half_gap.value > 0.0 && half_gap.half < FOUND_INTERVAL_SHARE * half_gap.value;
     let bends = compliance.value > 0.0 && compliance.half < FOUND_INTERVAL_SHARE * compliance.value;
     let or_together = |unknown: usize, why| if solution.is_separated(unknown) { why } else { CONFOUNDED };
-    let why_gap =
-        "both flanks must carry torques well above the friction, and the gap must be wider than what the encoders tell";
-    let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
+    let why_gap = "both flanks must carry torques well above the friction, and the gap must be wider than the \
+             resolution of the encoders";
+    let why_bends = "the torque on one flank must change enough to bend the joint by several counts";
     let why_gap = or_together(twist::HALF_GAP, why_gap);
     let why_bends = or_together(twist::COMPLIANCE, why_bends);
     let width = Shown { why: why_gap, is_shown: has_gap };
@@ -128,6 +128,8 @@ fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends:
         && per_ratio > 0.0
         && ratio.value > 0.0
         && ratio.half < FOUND_INTERVAL_SHARE * ratio.value;
-    finding(name, "-", key, ratio)
-        .only_if(known, "flanks must land so hard that the joint rings, and samples must follow the ringing")
+    finding(name, "-", key, ratio).only_if(
+        known,
+        "the flanks must land hard enough for the joint to ring, and the samples must resolve the ringing",
+    )
 }

@@ -22,8 +22,8 @@ const LOAD_MIN: f64 = 0.3;
 const LOAD_MIN_FRICTIONS: f64 = 3.0;
 /// Largest least load, as a share of the peak; above it too little is left to fit a flank.
 const LOAD_MIN_LIMIT: f64 = 0.6;
-/// After a reversal, samples are skipped until the torque has changed by STICKING_FACTOR times the change by friction plus
-/// STICKING_SHARE of the peak.
+/// After a reversal, samples are skipped until the torque has changed by STICKING_FACTOR times the change by friction
+/// plus STICKING_SHARE of the peak.
 const STICKING_FACTOR: f64 = 1.3;
 const STICKING_SHARE: f64 = 0.05;
 /// First guess of the skipped change, as a share of the peak.
@@ -87,16 +87,18 @@ impl Cycles {
                 ESTIMATE.write(low),
                 ESTIMATE.write(high)
             ))
-            .with_help("let the torque go slowly to and fro, so that both flanks of the teeth carry"));
+            .with_help("let the torque alternate slowly, so that both flanks of the teeth carry"));
         }
         let peak = high.min(-low);
         if high.max(-low) > PEAK_RATIO_MAX * peak {
             return Err(Failure::new(format!(
-                "the torque goes to {} N m one way and to {} N m the other way",
+                "the torque reaches {} N m in one direction and {} N m in the other",
                 ESTIMATE.write(high),
                 ESTIMATE.write(low)
             ))
-            .with_help("let the torque reach as much both ways: each flank is fitted on as wide a range"));
+            .with_help(
+                "let the torque reach the same value in both directions: both flanks are fitted over equal ranges",
+            ));
         }
         // A log may begin and end anywhere: only whole ways from peak to peak are used.
         let mut turns = turning_points(torque, TURN_SHARE * (high - low));
@@ -107,7 +109,7 @@ impl Cycles {
                 "too few cycles: the torque goes to and fro {} times, {CYCLES_MIN} are the least",
                 cycles.len()
             ))
-            .with_help("repeat the cycle: an interval is taken from how cycles repeat"));
+            .with_help("repeat the cycle: the intervals come from the scatter between cycles"));
         }
         let (mut sticking, mut least) = (STICKING_FIRST_GUESS * peak, LOAD_MIN * peak);
         let mut all = Vec::new();
@@ -122,24 +124,28 @@ impl Cycles {
             least = (LOAD_MIN * peak).max(LOAD_MIN_FRICTIONS * friction);
             if least > LOAD_MIN_LIMIT * peak || sticking > (1.0 - LOAD_MIN) * peak {
                 return Err(Failure::new(format!(
-                    "the torque is too small against the friction: {} N m at the output, of which friction is {} N m",
+                    "the torque is too small against the friction: {} N m at the output, including {} N m of friction",
                     ESTIMATE.write(peak),
                     ESTIMATE.write(friction + loss * peak)
                 ))
-                .with_help("let the torque reach ten times the motor's friction, or a self-locking gear's output be driven instead"));
+                .with_help(
+                    "let the torque reach ten times the motor's friction; with a self-locking gear, drive the output \
+                     instead",
+                ));
             }
         }
         let way = twist.iter().copied().fold(f64::MIN, f64::max) - twist.iter().copied().fold(f64::MAX, f64::min);
         let residual = quantile_of(&all.iter().map(|cycle| cycle.residual).collect::<Vec<_>>(), 0.5);
         if residual > RESIDUAL_MAX * way || mean(&all.iter().map(|cycle| cycle.compliance).collect::<Vec<_>>()) <= 0.0 {
             return Err(Failure::new(format!(
-                "the angle does not follow the torque along two straight flanks: {} rad are left over, of {} rad in all",
+                "the angle does not follow the torque along two straight flanks: the residual is {} rad of {} rad in \
+                     all",
                 ESTIMATE.write(residual),
                 ESTIMATE.write(way)
             ))
             .with_help(
-                "let the torque change evenly and slowly, one cycle in a second or more; check the signs of motor and torque, and that \
-                 the output is held",
+                "change the torque evenly and slowly, with at least a second per cycle; check the signs of motor and \
+                     torque, and that the output is held",
             ));
         }
         let whole =
@@ -151,7 +157,7 @@ impl Cycles {
 
 fn too_coarse() -> Failure {
     Failure::new("a cycle has too few samples on a flank, or its torques do not determine a fit")
-        .with_help("let the torque change evenly and slowly, and log more often")
+        .with_help("change the torque evenly and slowly, and log more often")
 }
 
 /// Samples of a cycle that are used.

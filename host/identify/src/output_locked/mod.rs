@@ -69,9 +69,10 @@ pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> O
     let cycles = Cycles::fit(&log.time, &log.twist, &log.torque).map_err(at_path)?;
     let findings = findings(&log, &cycles, loaded, prior);
     if !findings.iter().any(Finding::adds_information) {
-        return Err(at_path(Failure::new("nothing is identifiable from this log").with_help(
-            "let the torque go to and fro more often, up to several times the friction, and log a finer encoder",
-        )));
+        return Err(at_path(
+            Failure::new("nothing is identifiable from this log")
+                .with_help("log more cycles of the torque, up to several times the friction, and a finer encoder"),
+        ));
     }
     Ok(Results {
         duration: log.time.last().copied().unwrap_or_default(),
@@ -153,7 +154,8 @@ fn findings(log: &ClampedLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorMod
     let shown = |estimate: Estimate| estimate.value > 0.0 && estimate.half < FOUND_INTERVAL_SHARE * estimate.value;
     let width = Shown {
         is_shown: shown(lost_motion),
-        why: "the gap must be wider than what the encoder tells, and the torque must reach several times the friction both ways",
+        why: "the gap must be wider than the encoder's resolution, and the torque must reach several times the \
+             friction in both directions",
     };
     let bend = Shown {
         is_shown: shown(of_all_meshes),
@@ -163,7 +165,8 @@ fn findings(log: &ClampedLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorMod
     if prior.sharing.is_some() {
         findings[0] = findings[0].clone().only_if(
             false,
-            "planets mesh out of phase, so that errors of the teeth take a part of the gap that one place of the turn does not show",
+            "planets mesh out of phase, so that tooth errors reduce the gap by an amount that one place of the \
+                 turn does not show",
         );
     }
     let friction = of_cycles(cycles, |cycle| cycle.friction);
@@ -191,19 +194,19 @@ fn assumptions(log: &ClampedLog, cycles: &Cycles, prior: &PriorModel) -> Vec<Str
             ESTIMATE.write(cycles.loads[1])
         ),
         if log.has_output {
-            "What the output's encoder moves is taken off: the compliance is that of the gear.".to_owned()
+            "The motion of the output is subtracted: the compliance is the gear's alone.".to_owned()
         } else {
-            "The output's encoder is not in the log: the compliance of what holds the output is in the compliance found.".to_owned()
+            "The output's encoder is not in the log: the compliance found includes the clamp's.".to_owned()
         },
         "All values are of one place of the turn: lock the output at other places to see how they vary.".to_owned(),
         format!(
-            "Flanks are straight from {} to {} N m; by how much they are bent is in the intervals.",
+            "The flanks are taken as straight from {} to {} N m; the intervals include their curvature.",
             ESTIMATE.write(cycles.loads[0]),
             ESTIMATE.write(cycles.loads[1])
         ),
         format!(
-            "Torque's scale expected to be right within {:.1} % (one standard deviation): that is in the intervals of compliance and \
-             friction.",
+            "The torque's scale has a standard deviation of {:.1} %; the intervals of compliance and friction \
+                 include it.",
             100.0 * prior.torque_error
         ),
         format!("Ratio {} / {}; motor encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.motor_turn)),

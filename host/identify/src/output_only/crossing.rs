@@ -25,15 +25,16 @@ const PARTS: f64 = 20.0;
 const PARTS_EVALUATED: usize = 5;
 /// Least share of a g in the largest mean.
 const MEAN_LEAD_SHARE: f64 = 0.6;
-/// Error of the fitted delay over the delay [-]: the crossing looks like a part of the delay. Measured: 0.1 to 0.3 in simulated logs.
+/// Error of the fitted delay over the delay [-]: the crossing looks like a part of the delay. Measured: 0.1 to 0.3 in
+/// simulated logs.
 const DELAY_ERROR: f64 = 0.5;
 /// The search for the bound starts at the coasting distance of a crossing of a quarter, and goes down by the ratio
 /// SEARCH_STEP to SEARCH_END of it.
 const SEARCH_STEP: f64 = 0.98;
 const SEARCH_END: f64 = 1e-6;
 
-/// Returns the largest lost motion that the swings allow for a motor's share of the inertia from `least` to `most` [rad], or the reason why
-/// no bound exists.
+/// Returns the largest lost motion that the swings allow for a motor's share of the inertia from `least` to `most`
+/// [rad], or the reason why no bound exists.
 pub fn bound(
     integrals: &Integrals<'_>,
     swings: &[Swing],

@@ -1,7 +1,8 @@
-//! `joint identify --output-only`: estimates inertia, friction and weight, and an upper bound of the lost motion, from the output's angle and
-//! the motor's torque, for a joint whose motor has no encoder. `swings` finds the motions of the output between two turning points during
-//! which the torque reverses. `swing_fit` fits a balance of torques to all swings. While the motor crosses the gap, the output coasts;
-//! `crossing` derives the upper bound from the coasting distance.
+//! `joint identify --output-only`: estimates inertia, friction and weight, and an upper bound of the lost motion, from
+//! the output's angle and the motor's torque, for a joint whose motor has no encoder. `swings` finds the motions of the
+//! output between two turning points during which the torque reverses. `swing_fit` fits a balance of torques to all
+//! swings. While the motor crosses the gap, the output coasts; `crossing` derives the upper bound from the coasting
+//! distance.
 
 mod crossing;
 mod swing_fit;
@@ -31,8 +32,8 @@ use swings::{Swing, swings};
 
 /// Fewest swings: the scatter needs four swings beyond the number of shared unknowns.
 const SWINGS_MIN: usize = SHARED + 4;
-/// Bias of friction and weight that the simplified balance of torques may cause, over the largest torque [-]. Measured on simulated logs;
-/// twice the share for logs of both encoders.
+/// Bias of friction and weight that the simplified balance of torques may cause, over the largest torque [-]. Measured
+/// on simulated logs; twice the share for logs of both encoders.
 const BALANCE_BIAS: f64 = 0.003;
 
 /// Log of the output's angle and the motor's torque.
@@ -114,7 +115,8 @@ impl OutputLog {
     }
 }
 
-/// Rejects a fit that no joint can have: no response to the torque, or less inertia than the motor alone (`motor`, at the output [kg m^2]).
+/// Rejects a fit that no joint can have: no response to the torque, or less inertia than the motor alone (`motor`, at
+/// the output [kg m^2]).
 fn check(fit: &SwingFit, motor: f64) -> Outcome<()> {
     let Estimate { value, half } = fit.estimate(swing_fit::TORQUE);
     if value <= half {
@@ -143,8 +145,8 @@ fn findings(
     let inverse = fit.estimate(swing_fit::TORQUE);
     let loss = fit.torque_of(swing_fit::LOSS).value;
     let largest = swings.iter().flat_map(|swing| swing.torque).fold(0.0, f64::max);
-    // The loss of the gears differs between driving and braking, which biases the torque scale by 2 loss^2. Friction and weight change the
-    // torque through the teeth, and the loss with it.
+    // The loss of the gears differs between driving and braking, which biases the torque scale by 2 loss^2. Friction
+    // and weight change the torque through the teeth, and the loss with it.
     let scale = (NORMAL_QUANTILE * prior.torque_error).hypot(inverse.half / inverse.value) + 2.0 * loss * loss;
     let scaled = |estimate: Estimate| estimate.with_independent_error(scale * estimate.value);
     let inertia = scaled(Estimate { value: 1.0 / inverse.value, half: 0.0 });
@@ -219,7 +221,8 @@ fn findings(
     findings
 }
 
-/// Half-backlash and lost motion as upper bounds; the compliance, which the output alone does not show, without a value.
+/// Half-backlash and lost motion as upper bounds; the compliance, which the output alone does not show, without a
+/// value.
 fn gap(
     integrals: &Integrals<'_>,
     swings: &[Swing],

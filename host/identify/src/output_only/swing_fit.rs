@@ -1,19 +1,22 @@
-//! Least-squares fit of the balance of torques to the swings. y is the output's angle, T the motor's torque at the output, d the direction
-//! of the swing, I the inertia of motor and link together and D the delay of the torque. The common centre of motor and link obeys
+//! Least-squares fit of the balance of torques to the swings. y is the output's angle, T the motor's torque at the
+//! output, d the direction of the swing, I the inertia of motor and link together and D the delay of the torque. The
+//! common centre of motor and link obeys
 //!
 //! ```text
 //! I y'' = T(t - D) - d F - d l |T| - v y' - g_s sin y - g_c cos y - o                           (1)
 //! ```
 //!
-//! in every state of contact, with dry friction F, loss l of the gears, viscous friction v, weight g_s, g_c and torque offset o. The output
-//! differs from the common centre by the motor's share of the inertia times the twist, and moves on by
+//! in every state of contact, with dry friction F, loss l of the gears, viscous friction v, weight g_s, g_c and torque
+//! offset o. The output differs from the common centre by the motor's share of the inertia times the twist, and moves
+//! on by
 //!
 //! ```text
 //! S + k |dT| along d                                                                            (2)
 //! ```
 //!
-//! after the twist has changed its side. (1) is integrated twice. Angle and speed of each swing, and the change of its speed at the reversal,
-//! are unknowns of that swing alone and are eliminated first. Intervals come from the scatter between swings.
+//! after the twist has changed its side. (1) is integrated twice. Angle and speed of each swing, and the change of its
+//! speed at the reversal, are unknowns of that swing alone and are eliminated first. Intervals come from the scatter
+//! between swings.
 
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 

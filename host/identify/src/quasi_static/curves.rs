@@ -102,7 +102,7 @@ impl Curves {
     }
 }
 
-/// RepeatScatter of repeats, from the places with several.
+/// Scatter of repeats, from the places with several.
 struct RepeatScatter {
     /// Standard deviation of the repeats' means.
     whole: f64,

@@ -81,18 +81,20 @@ impl Loading {
     /// The loading in one sentence.
     pub fn sentence(self) -> &'static str {
         match self {
-            Self::ByHalf => "The load is told: one way in the first half, the other way in the second.",
+            Self::ByHalf => "The load is stated: one way in the first half, the other way in the second.",
             Self::ByTorque => {
-                "The load is told by the torque: it keeps its sign within each pass, and has either sign in both directions."
+                "The torque shows the load: it keeps its sign within each pass, and has both signs in both \
+                     directions."
             }
             Self::ByDirection { reverses: true } => {
                 "The measured output torque reverses with the direction of motion: each direction carries on its own flank, so \
                  the width by direction is lost motion and hysteresis together, which this log does not separate."
             }
             Self::ByDirection { reverses: false } => {
-                "The load is not told. If friction at the output closes one flank forwards and the other backwards, the width by \
-                 direction is lost motion and hysteresis together; if a load keeps one flank closed, it is hysteresis alone. \
-                 Nothing in this log says which: sweep under a known load either way and state --half, or log the output torque."
+                "The load is unknown. If friction at the output closes one flank forwards and the other backwards, \
+                     the width by direction is lost motion and hysteresis together; if a load keeps one flank closed, it \
+                     is hysteresis alone. This log does not show which: sweep under known loads of both directions and \
+                     state --half, or log the output torque."
             }
             Self::OneWay => {
                 "The torque has one sign throughout: one flank carries all the time, so that the width by direction is \
@@ -126,7 +128,8 @@ pub fn check_one_load(profiles: &Profiles, means: &[Vec<f64>], width: f64) -> Ou
         return Ok(());
     }
     Err(Failure::new(format!(
-        "passes of one direction do not repeat: they differ by {apart:.4} where both directions are apart by {:.4}",
+        "passes of one direction do not repeat: they differ by {apart:.4} while the two directions differ by \
+             {:.4}",
         width.abs()
     ))
     .with_help(
@@ -179,8 +182,8 @@ fn check_levels(profiles: &Profiles, deviations: &[Vec<f64>], width: f64) -> Out
         _ => "sweep loaded one way first and then the other, and name both stretches by --half FROM..TO".to_owned(),
     };
     Err(Failure::new(format!(
-        "the load changes in this log: passes of one direction lie on two levels, apart by {apart:.4} where both directions are \
-         apart by {:.4}",
+        "the load changes in this log: passes of one direction lie on two levels, apart by {apart:.4} while \
+             the two directions differ by {:.4}",
         width.abs()
     ))
     .with_help(help))

@@ -91,17 +91,17 @@ const RATIO_TOLERANCE: f64 = 0.003;
 const STRAIGHTNESS_MAX: f64 = 3.0;
 
 /// Compares a stated ratio with the travel of motor and output.
-fn check_ratio(said: Option<f64>, results: &Results) -> Outcome<()> {
+fn check_ratio(stated: Option<f64>, results: &Results) -> Outcome<()> {
     let (map, places) = (&results.map, &results.profiles.places);
     let output_per_motor = map.output_per_motor();
     let is_other = (output_per_motor - 1.0).abs() > RATIO_TOLERANCE && map.straightness(places) > STRAIGHTNESS_MAX;
-    let Some(said) = said.filter(|_| is_other) else { return Ok(()) };
+    let Some(stated) = stated.filter(|_| is_other) else { return Ok(()) };
     Err(Failure::new(format!(
-        "the output turns {output_per_motor:.4} times as far as the motor and the ratio of {said} say: widths would be off by as much"
+        "the output turns {output_per_motor:.4} times as far as the motor and the ratio of {stated} say: widths would be off by as much"
     ))
     .with_help(format!(
         "it is {:.2} in this log: `--gear-ratio`; or an encoder has another number of counts a turn, or its angle another unit: `--unit`",
-        said / output_per_motor
+        stated / output_per_motor
     )))
 }
 
@@ -109,7 +109,7 @@ fn check_halves(halves: &[(f64, f64)]) -> Outcome<()> {
     match halves {
         [] => Ok(()),
         [(from, to), (other_from, other_to)] if to <= other_from || other_to <= from => Ok(()),
-        [_, _] => Err(Failure::new("the two halves overlap").with_help("a moment can be loaded one way only")),
+        [_, _] => Err(Failure::new("the two halves overlap").with_help("the load has one direction at a time")),
         halves => Err(Failure::new(format!("--half is given {} times", halves.len()))
             .with_help("give it twice: for the sweeps that are loaded one way, and for those loaded the other way")),
     }

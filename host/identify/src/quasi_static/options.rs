@@ -40,6 +40,6 @@ fn ratio(text: &str) -> Result<f64, String> {
     if (1e-6..=1e6).contains(&value.abs()) {
         Ok(value)
     } else {
-        Err("must be from 1e-6 to 1e6, or less than none".to_owned())
+        Err("must be from 1e-6 to 1e6, or from -1e6 to -1e-6".to_owned())
     }
 }

@@ -100,15 +100,14 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
     let mut all = vec![
         loading.sentence().to_owned(),
         match scale.per_turn {
-            Some(turn) if unit == "units" => format!("A turn of the output is {} units, as told.", number(turn)),
+            Some(turn) if unit == "units" => format!("A turn of the output is {} units, as stated.", number(turn)),
             Some(_) => "Angles are in radians.".to_owned(),
-            None => {
-                "Figures are in the log's own unit: how much of it a turn is was not told (--output-units-per-turn)."
-                    .to_owned()
-            }
+            None => "Figures are in the log's own unit; its size per turn was not stated (--output-units-per-turn)."
+                .to_owned(),
         },
         format!(
-            "{count} passes, {} bins of {} {unit}, {} {unit} left out at each end of a pass; usual speed {} {unit}/s.",
+            "{count} passes, {} bins of {} {unit}, {} {unit} excluded at each end of a pass; median speed {} \
+                 {unit}/s.",
             profiles.places.len(),
             number(profiles.width),
             number(*left_out),
@@ -122,9 +121,9 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
             samples.gaps.0,
             number(1e3 * samples.gaps.1)
         ),
-        "Intervals take passes for independent repeats; what all passes share is not in them.".to_owned(),
+        "The intervals treat passes as independent repeats; errors common to all passes are not included.".to_owned(),
         format!(
-            "Readings of both encoders together resolve {} {unit}: half of an interval is no less.",
+            "The resolution of both encoders together is {} {unit}; half of an interval is at least this.",
             number(samples.resolution)
         ),
     ];
@@ -144,7 +143,7 @@ pub fn document(log: &str, samples: &Samples, results: &Results, figures: Vec<Fi
             .into(),
         blocks: vec![
             section_bare("What was found", vec![quantities(results)]),
-            section_bare("How well it predicts", predictions(results)),
+            section_bare("Cross-validation", predictions(results)),
             section("Pictures", figures.collect()),
             section_bare(
                 "What it rests on",
@@ -185,14 +184,14 @@ fn predictions(results: &Results) -> Vec<Block> {
     let Results { prediction, scale, .. } = results;
     let rows = [
         ("a map alone", prediction.map),
-        ("a map and one number for each direction and load", prediction.map_and_width),
-        ("a curve for each direction and load", prediction.curves),
-        ("expected of the last from repeatability alone", prediction.repeatability),
-        ("beyond the second that the third knows", prediction.unexplained()),
+        ("a map and one number per direction and load", prediction.map_and_width),
+        ("a curve per direction and load", prediction.curves),
+        ("expected residual of the curves from repeatability alone", prediction.repeatability),
+        ("explained by the curves beyond one number", prediction.unexplained()),
     ];
     let rows = rows.map(|(name, value)| row([text(name), text(ESTIMATE.write(value)), text(scale.unit)]));
     let lead = format!(
-        "Fitted on {} passes, tried on the other {}: root mean square of what is left over, by bins.",
+        "Fitted on {} passes, tested on the other {}: root mean square of the residuals, by bins.",
         prediction.fitted, prediction.predicted
     );
     let mut blocks = vec![
@@ -201,7 +200,7 @@ fn predictions(results: &Results) -> Vec<Block> {
     ];
     let groups = results.groups.len();
     if (prediction.fitted, prediction.predicted) == (groups, groups) {
-        let note = "With two passes of each kind the third and the fourth line are the same by construction.";
+        let note = "With two passes of each kind the third and the fourth line are equal by construction.";
         blocks.push(Block::Note(note.into()));
     }
     blocks

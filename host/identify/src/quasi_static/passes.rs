@@ -78,7 +78,7 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         None if halves.is_empty() => Err(Failure::new("no pass is left between turning points and gaps")
             .with_help("sweep over the whole way between two gaps of the log, or record without gaps")),
         None => Err(Failure::new("no pass is left between turning points, gaps and the ends of the halves")
-            .with_help("let --half FROM..TO hold whole sweeps; times are counted from the first sample")),
+            .with_help("let --half FROM..TO contain whole sweeps; times count from the first sample")),
     }
 }
 
@@ -113,13 +113,13 @@ fn check_simultaneous(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     }
     let (late, early) = if usual > 0.0 { ("output", "motor") } else { ("motor", "output") };
     Err(Failure::new(format!(
-        "the {late}'s readings are late: at turning points the output goes on or back by {} of its usual steps against the motor, which \
-         no friction and no gap does",
+        "the {late}'s readings are late: at turning points the output moves {} of its usual steps against the \
+             motor, which neither friction nor a gap explains",
         ESTIMATE.write(usual.abs())
     ))
     .with_help(format!(
-        "that feigns a width of twice the way in between; shift the column by about {} rows against that of the {early}, or read both \
-         at once",
+        "this mimics a width of twice the motion in between; shift the column by about {} rows against the \
+             {early}'s, or read both at the same time",
         usual.abs().round()
     )))
 }

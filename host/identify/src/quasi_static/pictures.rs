@@ -75,17 +75,17 @@ pub fn all(results: &Results) -> Vec<(&'static str, Figure)> {
 
     let at = |index: usize| -> Vec<f64> { prediction.residuals.iter().map(|one| one[index]).collect() };
     let left = Panel::lines(
-        "What a map and one width leave over in unseen passes",
+        "Residual of a map and one width in unseen passes",
         unit,
         vec![interval(&at(1), &at(2), "10 to 90 % of the passes"), line(&at(0), Ink::First, "mean", 1.6)],
     );
     let marks = prediction.systematic.iter().enumerate().map(|(group, values)| line(values, LINES[group], "", 1.6));
-    let by_group = Panel::lines("Of that, what each direction and load repeats", unit, marks.collect());
-    let residual = figure("What the model leaves over", vec![left, by_group]);
+    let by_group = Panel::lines("Systematic part per direction and load", unit, marks.collect());
+    let residual = figure("Residuals of the model", vec![left, by_group]);
 
     let points = Mark::Points { points: levels.clone(), ink: Ink::First, label: String::new(), size: 6.0 };
     let end = profiles.all.iter().map(|one| one.time[2]).fold(0.0, f64::max);
-    let panel = Panel::lines("Mean of each pass about its group's", unit, vec![points]);
+    let panel = Panel::lines("Mean of each pass about its group's mean", unit, vec![points]);
     let drift = Figure::over_time("How passes repeat", SECONDS, (0.0, end), vec![panel]);
     vec![
         ("lost-motion.svg", lost_motion),

@@ -130,13 +130,15 @@ pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> 
         _ => format!(" in the {} half", ["first", "second"][half.min(1)]),
     };
     Err(Failure::new(format!("too few passes: {count} {way}{place}, {PASSES_MIN} each way are the least")).with_help(
-        "sweep over the same places at least twice each way, slowly; an interval is taken from how passes repeat",
+        "sweep slowly over the same places at least twice in each direction; the intervals come from the \
+             scatter between passes",
     ))
 }
 
 fn no_common_places() -> Failure {
     Failure::new(
-        "the passes do not go over the same places: fewer than eight places have all kinds of passes and a repeat",
+        "the passes do not cover the same places: fewer than eight places have all kinds of passes and a \
+             repeat",
     )
     .with_help("sweep to and fro between the same places, in each half of the log")
 }

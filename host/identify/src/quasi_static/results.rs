@@ -140,7 +140,7 @@ impl Results {
                 ESTIMATE.write(largest)
             ))
             .with_help(
-                "sweep more slowly, or log more often: encoders that are read at different moments would feign such a width",
+                "sweep more slowly, or log more often: encoders read at different times would mimic this width",
             ));
         }
         let mut found = FigureList { scale: samples.scale, resolution: samples.resolution, all: Vec::new() };
@@ -196,12 +196,18 @@ fn check_sign(loading: Loading, width: &Estimate) -> Outcome<()> {
         return Ok(());
     }
     let what = if loading == Loading::ByTorque {
-        "the output stands ahead of the motor where the torque drives it forwards"
+        "the output is ahead of the motor while the torque drives it forwards"
     } else {
         "the output is ahead of the motor in both directions"
     };
-    Err(Failure::new(format!("{what}, by {}: no backlash and no friction does that", ESTIMATE.write(-width.value)))
-        .with_help("the difference, the torque or an encoder counts the other way, or the encoders are read at different moments"))
+    Err(Failure::new(format!(
+        "{what}, by {}: neither backlash nor friction explains this",
+        ESTIMATE.write(-width.value)
+    ))
+    .with_help(
+        "the difference, the torque or an encoder counts the other way, or the encoders are read at different \
+             times",
+    ))
 }
 
 /// Ends of the interval, if it is finite.
@@ -253,7 +259,7 @@ impl FigureList {
         loading: Loading,
         shares: &[Estimate; 3],
         (loops, ranges): (&[Estimate], &[[f64; 2]]),
-        feigned: f64,
+        mimicked: f64,
         higher: &str,
     ) {
         let known = loading.groups() == 4;
@@ -271,7 +277,7 @@ impl FigureList {
                 interval: None,
                 value_deg: None,
                 interval_deg: None,
-                note: "not told by this log alone: no reversal under a known load".into(),
+                note: "not determined by this log: no reversal under a known load".into(),
             });
         }
         if loading != Loading::OneWay {
@@ -292,8 +298,8 @@ impl FigureList {
         if known || loading == Loading::OneWay {
             for (load, (name, estimate)) in loading.names().iter().zip(loops).enumerate() {
                 let note = if estimate.value + estimate.half < 0.0 {
-                    "negative: the output is ahead of the motor, which no friction does; the encoders are read at different moments, \
-                     or the motor is not where its encoder says"
+                    "negative: the output is ahead of the motor, which friction does not explain; the encoders are read \
+                         at different times, or the motor's encoder is wrong"
                 } else {
                     ""
                 };
@@ -306,9 +312,9 @@ impl FigureList {
         }
         self.angle(
             "feigned_by_one_period",
-            "feigned by readings one sampling period apart",
-            Estimate { value: feigned, half: f64::NAN },
-            "what it would put into figures by direction; not in their intervals",
+            "mimicked by readings one sampling period apart",
+            Estimate { value: mimicked, half: f64::NAN },
+            "possible error of the figures by direction; not in their intervals",
         );
     }
 
@@ -339,7 +345,7 @@ impl FigureList {
         let ripple = curves.estimate(|means| (of(means).ripple_rms().powi(2) - noise).max(0.0).sqrt());
         let strongest = of(&curves.means()).strongest_ripple(places).map_or(String::new(), |(period, amplitude)| {
             format!(
-                "scatter taken off; strongest period {}, amplitude {} {}",
+                "scatter subtracted; strongest period {}, amplitude {} {}",
                 ESTIMATE.write(period),
                 ESTIMATE.write(amplitude),
                 self.scale.unit
@@ -412,7 +418,8 @@ impl FigureList {
         let left: f64 = levels.iter().map(|level| (level.2 - slope * (level.1 - starts[level.0])).powi(2)).sum();
         let half = student(freedom) * (left / freedom / square).sqrt();
         let unit = format!("{}/s", self.scale.unit);
-        let note = "of the passes' means about their group's; a width between halves has it over the time between them";
+        let note = "of the passes' means about their group's means; a width between halves includes the drift over the \
+             time between them";
         let times = levels.iter().map(|level| level.1);
         let duration = times.clone().fold(f64::MIN, f64::max) - times.fold(f64::MAX, f64::min);
         let drift = Estimate { value: slope, half }.with_half_at_least(self.resolution / duration);
@@ -433,12 +440,12 @@ impl FigureList {
                 (
                     "dry_friction",
                     torque.estimate(|means| 0.5 * (at(means, forwards) - at(means, backwards))),
-                    "mean of both directions, with what viscous friction there is at this speed",
+                    "mean of both directions, including viscous friction at this speed",
                 ),
                 (
                     "load_and_asymmetry",
                     torque.estimate(|means| 0.5 * (at(means, forwards) + at(means, backwards))),
-                    "load, and half by which friction forwards is larger than backwards, not separated",
+                    "load plus half the excess of forward over backward friction, not separated",
                 ),
             ];
             for (own, estimate, note) in figures {

@@ -103,8 +103,8 @@ impl Samples {
         steps.sort_by(f64::total_cmp);
         let period = quantile(&steps, 0.5);
         if period <= 0.0 {
-            return Err(Failure::new("the time stands still for most of the log").with_help(
-                "check the column: time_s, time_ms and time_us are understood, --column time_s=NAME takes another",
+            return Err(Failure::new("the time does not advance for most of the log").with_help(
+                "check the column: time_s, time_ms and time_us are accepted, --column time_s=NAME reads another",
             ));
         }
         let gaps = steps.iter().filter(|step| **step > GAP_STEPS * period).count();
@@ -166,8 +166,8 @@ impl Samples {
                 "the output does not follow the motor: their readings correlate by {correlation:.2}"
             ))
             .with_help(match open_options(options, columns, false)[..] {
-                [] => "check --column, and whether both encoders are of one joint".to_owned(),
-                ref open => format!("check --column; counts that begin anew each turn need {}", open.join(" and ")),
+                [] => "check --column, and that both encoders belong to one joint".to_owned(),
+                ref open => format!("check --column; counts that wrap every turn need {}", open.join(" and ")),
             }));
         }
         if SLOPE_RANGE.contains(&slope) {
@@ -179,7 +179,8 @@ impl Samples {
         );
         if columns.column(DIFFERENCE).is_some() {
             return Err(Failure::new(message).with_help(format!(
-                "`{DIFFERENCE}` is in another unit than the output, or of a motor that is not on the output's scale: convert it"
+                "`{DIFFERENCE}` has another unit than the output, or its motor is not on the output's scale: convert \
+                     it"
             )));
         }
         let ratio = ESTIMATE.write(options.gear_ratio.unwrap_or(1.0) / slope);
@@ -250,7 +251,7 @@ fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64])
         let stated = [("--gear-ratio", options.gear_ratio), ("--motor-units-per-turn", options.motor_units_per_turn)];
         if let Some((option, _)) = stated.iter().find(|(_, value)| value.is_some()) {
             return Err(Failure::new(format!(
-                "{option} has no effect: `{DIFFERENCE}` is of a motor that is geared already"
+                "{option} has no effect: in `{DIFFERENCE}` the motor is already on the output's scale"
             ))
             .with_help("leave the option out, or give the motor's own column"));
         }
@@ -348,11 +349,11 @@ fn jump_causes(name: &str, columns: &Columns, options: &Options) -> String {
     };
     match stated {
         Some(turn) => {
-            format!("counts begin anew after another number than the {} that {option} states", TYPED.write(turn))
+            format!("the counts wrap after another number than the {} stated by {option}", TYPED.write(turn))
         }
-        None if has_column(columns, names[0]) => format!("counts begin anew each turn: then state {option}"),
+        None if has_column(columns, names[0]) => format!("the counts wrap every turn: state {option}"),
         None => format!(
-            "an angle begins anew in another unit than rad: name it {} and state its unit by --unit",
+            "an angle wraps in another unit than rad: name it {} and state its unit with --unit",
             names[1].trim_end_matches("_rad")
         ),
     }

@@ -45,7 +45,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         }
     };
     let rate = f64::from(around.control_rate);
-    let of_rate = "is no rate of a joint's controller";
+    let of_rate = "is implausible as the rate of a joint's controller";
     only_if(
         rate,
         CONTROL_RATE_LIMITS,
@@ -55,7 +55,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         of_rate,
         "it is in Hz: 10 kHz are 10e3 Hz",
     );
-    let of_lag = "is no time constant of a current loop";
+    let of_lag = "is implausible as the time constant of a current loop";
     only_if(
         around.current_lag,
         CURRENT_LAG_LIMITS,
@@ -76,7 +76,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         "it counts periods, 1 is usual; 100 us at 10 kHz are 1",
     );
     let friction = &around.load_friction;
-    let of_speed = "is no speed at which the rise of dry friction decays";
+    let of_speed = "is implausible as the speed at which excess friction decays";
     only_if(
         friction.stribeck_speed,
         STRIBECK_SPEED_LIMITS,
@@ -117,7 +117,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         "a ratio: 3 % is 0.03",
     );
     let angle = file.parameters.geometry.working_pressure_angle;
-    let of_angle = "is no pressure angle that teeth are cut with";
+    let of_angle = "is not a usual pressure angle of teeth";
     only_if(
         angle,
         PRESSURE_ANGLE_LIMITS,
@@ -148,7 +148,7 @@ fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEn
                 figure(1e3 * count),
                 figure(1e3 * gap)
             );
-            (message, "nothing sees this gap; more counts in a turn, or the backlash is in another unit".into())
+            (message, "no encoder resolves this gap: use more counts per turn; or the backlash is in another unit".into())
         });
         let errors = [
             ("once_per_turn_error_deg", encoder.once_per_turn_error),
@@ -167,8 +167,10 @@ fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEn
     }
     if encoder.skew != 0.0 {
         judge.check_figure(&[&key("skew_us")], encoder.skew, SKEW_LIMITS, |_, name| {
-            let message =
-                format!("`{name}` of the {side} encoder: {} us is no age of a reading", figure(1e6 * encoder.skew));
+            let message = format!(
+                "`{name}` of the {side} encoder: {} us is implausible as the age of a reading",
+                figure(1e6 * encoder.skew)
+            );
             (message, "it is in us: 0.05 ms and 5e-5 s are 50 us".into())
         });
     }

@@ -84,7 +84,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         if backlash > 0.0 {
             judge.check_figure(&named, error / backlash, Limits::above(4.0, UNLIMITED), |_, key| {
                 let message = format!(
-                    "`{key}`: an amplitude of {} um takes a backlash 2b of {} um up and beyond as the gears turn",
+                    "`{key}`: an amplitude of {} um exceeds a backlash 2b of {} um as the gears turn",
                     figure(1e6 * error),
                     figure(1e6 * backlash)
                 );
@@ -124,9 +124,9 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let named: Vec<&str> = named.iter().map(String::as_str).collect();
         if mesh.damping_ratio > 0.0 {
             judge.check_figure(&named, mesh.damping_ratio, DAMPING_LIMITS, |too_much, key| {
-                let what = if too_much { "teeth that hardly ring" } else { "teeth that ring for ever" };
+                let what = if too_much { "teeth that hardly ring" } else { "teeth that ring almost undamped" };
                 let message = format!("`{key}` of [mesh] = {}: {what}", mesh.damping_ratio);
-                (message, "0.03 to 0.1 is usual of gear meshes: 5 % is 0.05; 0 if there shall be none".into())
+                (message, "0.03 to 0.1 is usual of gear meshes: 5 % is 0.05; 0 for no damping".into())
             });
         }
     }

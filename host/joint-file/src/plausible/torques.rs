@@ -125,9 +125,9 @@ fn spring(rated: f64, of: &Compliance, (section, does): (&str, &str), keys: &[&s
     if damping > 0.0 {
         let limits = Limits { odd: (2e-4, 0.4), possible: (0.0, 1.0) };
         judge.check_figure(&[&format!("{section}.damping_ratio")], damping, limits, |too_much, key| {
-            let what = if too_much { "a joint that hardly swings" } else { "a joint that swings for ever" };
+            let what = if too_much { "a joint that hardly swings" } else { "a joint that swings almost undamped" };
             let message = format!("`{key}` of [{section}] = {damping}: {what}");
-            (message, "0.01 to 0.05 is usual of bolted steel: 2 % is 0.02; 0 if there shall be none".into())
+            (message, "0.01 to 0.05 is usual of bolted steel: 2 % is 0.02; 0 for no damping".into())
         });
     }
 }

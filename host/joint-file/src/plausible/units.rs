@@ -38,10 +38,10 @@ pub(super) fn likely(slips: &[Slip], value: f64, judged: f64, power: i32, usual:
     });
     let mut fits: Vec<&Slip> = fits.collect();
     fits.sort_by(|one, other| score(one).total_cmp(&score(other)));
-    let told = |slip: &&Slip| {
+    let describe = |slip: &&Slip| {
         format!("typed in {}: {} of it are {} {key_unit}", slip.unit, figure(value), figure(value * slip.factor))
     };
-    match fits.iter().take(2).map(told).collect::<Vec<_>>()[..] {
+    match fits.iter().take(2).map(describe).collect::<Vec<_>>()[..] {
         [] => format!("give it in {key_unit}"),
         [ref one] => format!("likely {one}"),
         [ref one, ref other, ..] => format!("likely {one}; or {other}"),

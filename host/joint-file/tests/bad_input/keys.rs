@@ -96,7 +96,7 @@ fn section_as_value_is_rejected() {
 #[test]
 fn mass_and_inertia_conflict() {
     let text = spoilt("sun_equivalent_mass_kg = 0.02", "sun_equivalent_mass_kg = 0.02\nsun_inertia_kg_m2 = 1e-6");
-    let message = "`sun_equivalent_mass_kg` and `sun_inertia_kg_m2` say the same thing twice";
+    let message = "`sun_equivalent_mass_kg` and `sun_inertia_kg_m2` state one quantity twice";
     refused(&text, message, "1e-6", "keep one");
     let text = spoilt("planet_equivalent_mass_kg = 0.03", "");
     let message = "[bodies] needs one of `planet_equivalent_mass_kg` and `planet_inertia_kg_m2`";

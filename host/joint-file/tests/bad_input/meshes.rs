@@ -7,7 +7,7 @@ use crate::{only, problems, refused, spoilt};
 #[test]
 fn half_and_whole_backlash_conflict() {
     let text = spoilt("half_backlash_um = 40.0", "half_backlash_um = 40.0\nbacklash_um = 80.0");
-    let message = "`half_backlash_um` and `backlash_um` say the same thing twice";
+    let message = "`half_backlash_um` and `backlash_um` state one quantity twice";
     refused(&text, message, "80.0", "keep one of `half_backlash_um` and `backlash_um`");
 }
 
@@ -112,7 +112,7 @@ fn mesh_frequency_belongs_to_time_mode() {
     refused(&text, message, "[excitation]", "rad/s");
     let text =
         spoilt("mode = \"angle\"", "mode = \"time\"\nmesh_frequency_Hz = 100\nmesh_frequency_over_omega_n = 2.1");
-    let message = "`mesh_frequency_Hz` and `mesh_frequency_over_omega_n` say the same thing twice";
+    let message = "`mesh_frequency_Hz` and `mesh_frequency_over_omega_n` state one quantity twice";
     refused(&text, message, "2.1", "keep one of");
     let text = spoilt("mode = \"angle\"", "mode = \"angle\"\nmesh_frequency_Hz = 100");
     let message =

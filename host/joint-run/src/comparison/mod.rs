@@ -80,8 +80,8 @@ impl PendingReferences {
     pub fn finish(self, samples: &[Sample], ratio: f64) -> Outcome<Comparison> {
         let exact = match self.followed.join() {
             Ok(Ok(observations)) => observations,
-            Ok(Err(error)) => return Err(Failure::new(format!("the reference does not take this joint: {error}"))),
-            Err(_) => return Err(Failure::new("the reference has failed")),
+            Ok(Err(error)) => return Err(Failure::new(format!("the reference cannot model this joint: {error}"))),
+            Err(_) => return Err(Failure::new("the reference panicked")),
         };
         let board = rows_of_board(samples, &self.ticks, ratio);
         let exact_rows: Vec<Row> = exact.iter().map(|observation| Row::of_reference(observation, ratio)).collect();

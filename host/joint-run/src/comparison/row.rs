@@ -9,7 +9,8 @@ use crate::record::MotionSample;
 pub const QUANTITIES: [ComparedQuantity; 4] = [
     // Measured on joint Q1: 7.2e-6. The rigid body is exact except for the rounding of torque gains to f32.
     ComparedQuantity { name: "link angle", limit: 1e-4 },
-    // Measured: 5.7e-3. Planets bounce for milliseconds after every crossing of the gap, which amplifies the step's error.
+    // Measured: 5.7e-3. Planets bounce for milliseconds after every crossing of the gap, which amplifies the step's
+    // error.
     ComparedQuantity { name: "twist of motor against link", limit: 1e-2 },
     // Measured: 2.5e-3. As for the twist; 1 % is the strictest requirement on 20 kHz.
     ComparedQuantity { name: "gap", limit: 1e-2 },

@@ -91,7 +91,7 @@ pub fn motion(record: &RunRecord) -> Block {
 /// Timing of the board.
 pub fn timing(record: &RunRecord) -> Block {
     let Some(figures) = &record.timing else {
-        return section("Timing", vec![Block::Paragraph("The board could not be asked for its figures.".into())]);
+        return section("Timing", vec![Block::Paragraph("The board did not report its figures.".into())]);
     };
     let mut blocks = Vec::new();
     if let Some(image) = &record.identity.image {

@@ -64,8 +64,8 @@ fn notices(record: &RunRecord) -> Vec<Block> {
         notices.push(alert(
             strong("INCOMPLETE. ")
                 + format!(
-                    "The run broke off at tick {tick} of {}: {reason}. What was recorded until then is shown below; \
-                     checks that need the rest were not made.",
+                    "The run broke off at tick {tick} of {}: {reason}. The recording up to that tick is shown below; \
+                         checks that need the rest were not run.",
                     record.settings.ticks
                 ),
         ));

@@ -126,7 +126,9 @@ impl<E> FileReader<'_, E> {
         let Record::Chunk { header, data } = parse_record(op::CHUNK, content)? else { return Ok(()) };
         let ChunkHeader { uncompressed_size: size, compression, .. } = header;
         self.room = self.room.checked_sub(size).ok_or_else(|| {
-            ReadEnd::Damaged(format!("it says that it unpacks to {size} bytes, far more than such a file holds"))
+            ReadEnd::Damaged(format!(
+                "its stated unpacked size is {size} bytes, far more than a file of this size holds"
+            ))
         })?;
         if compression.is_empty() {
             check_plain(&data, size).map_err(ReadEnd::Damaged)?;
@@ -149,14 +151,14 @@ impl<E> From<McapError> for ReadEnd<E> {
 /// Checks that an uncompressed chunk holds whole records and nothing else, which the library assumes.
 fn check_plain(data: &[u8], size: u64) -> Result<(), String> {
     if data.len() as u64 != size {
-        return Err(format!("it says that it holds {size} bytes, and it has {}", data.len()));
+        return Err(format!("its stated size is {size} bytes, but it has {}", data.len()));
     }
     let mut rest = data;
     while !rest.is_empty() {
         let length =
             rest.get(1..RECORD_HEADER_SIZE).and_then(|length| Some(u64::from_le_bytes(length.try_into().ok()?)));
         let whole = length.and_then(|length| usize::try_from(length).ok()?.checked_add(RECORD_HEADER_SIZE));
-        rest = whole.and_then(|whole| rest.get(whole..)).ok_or("a record in it goes beyond its end")?;
+        rest = whole.and_then(|whole| rest.get(whole..)).ok_or("a record extends beyond its end")?;
     }
     Ok(())
 }
@@ -187,7 +189,7 @@ fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
         }
         Some(())
     };
-    whole().ok_or_else(|| "a text in it goes beyond its end".to_owned())
+    whole().ok_or_else(|| "a text extends beyond its end".to_owned())
 }
 
 /// Bytes behind a text that is preceded by its length.

@@ -73,7 +73,7 @@ fn valid_mcap_is_read() {
 fn text_length_is_checked_first() {
     let endless = [&[1, 0, 1, 0], &u32::MAX.to_le_bytes()[..], b"/a"].concat();
     for opcode in [op::CHANNEL, op::SCHEMA] {
-        damaged(&file(&[&schema(), &record(opcode, &endless)]), "a text in it goes beyond its end");
+        damaged(&file(&[&schema(), &record(opcode, &endless)]), "a text extends beyond its end");
     }
     let mut pairs = channel("/a");
     let end = pairs.len();
@@ -98,17 +98,17 @@ fn long_record_is_named_by_place() {
 fn plain_chunk_holds_whole_records() {
     let content = [schema(), channel("/a"), message(b"1")].concat();
     let size = content.len() as u64;
-    damaged(&file(&[&chunk("", size + 1, &content)]), "and it has");
+    damaged(&file(&[&chunk("", size + 1, &content)]), "but it has");
     // The last record would end behind the chunk.
     let short = &content[..content.len() - 1];
-    damaged(&file(&[&chunk("", size - 1, short), &[0; 40]]), "a record in it goes beyond its end");
+    damaged(&file(&[&chunk("", size - 1, short), &[0; 40]]), "a record extends beyond its end");
 }
 
 /// Chunks may unpack to a limited multiple of the file's size.
 #[test]
 fn unpacked_chunk_size_is_limited() {
     for compression in ["lz4", "zstd"] {
-        damaged(&file(&[&chunk(compression, LENGTH_MAX, b"few bytes")]), "far more than such a file holds");
+        damaged(&file(&[&chunk(compression, LENGTH_MAX, b"few bytes")]), "far more than a file of this size holds");
         damaged(&file(&[&chunk(compression, 1 << 19, b"few bytes")]), "chunk at byte");
     }
     // Two chunks share the limit.

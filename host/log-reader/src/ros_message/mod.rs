@@ -110,7 +110,7 @@ impl MessageDefinition {
     /// Paths and values of all numbers in a message, in its order.
     pub fn numbers(&self, message: &[u8]) -> Result<Numbers, String> {
         let [0, kind @ (0 | 1), _, _, body @ ..] = message else {
-            return Err("it is not in plain CDR".to_owned());
+            return Err("it is not encoded in plain CDR".to_owned());
         };
         let mut reading = Decoder { definition: self, body, at: 0, big: *kind == 0, numbers: Numbers::default() };
         reading.read_message("", "", 0)?;
@@ -124,7 +124,7 @@ fn last_part(name: &str) -> String {
 }
 
 fn no_field(line: &str) -> String {
-    format!("`{}` is no field of a message", line.chars().take(LETTERS_SHOWN).collect::<String>())
+    format!("`{}` is not a field of a message", line.chars().take(LETTERS_SHOWN).collect::<String>())
 }
 
 /// Field of a line; `Some(None)` for a constant.
@@ -165,9 +165,9 @@ struct Decoder<'r> {
 impl Decoder<'_> {
     fn read_message(&mut self, kind: &str, path: &str, depth: usize) -> Result<(), String> {
         let form = self.definition;
-        let fields = form.types.get(kind).ok_or_else(|| format!("the form of `{kind}` is not written down"))?;
+        let fields = form.types.get(kind).ok_or_else(|| format!("the definition of `{kind}` is missing"))?;
         if depth > DEPTH_MAX {
-            return Err(format!("`{kind}` has itself in it"));
+            return Err(format!("`{kind}` contains itself"));
         }
         for field in fields {
             let name = numbers::field(path, &field.name)?;

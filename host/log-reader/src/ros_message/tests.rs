@@ -74,7 +74,7 @@ fn nested_lists_take_bounded_time() {
         let form = MessageDefinition::read(&format!("{text}===\nMSG: a/M16\n{last}\n"))?;
         form.numbers(&[[0, 1, 0, 0].as_slice(), &[0; 10_000]].concat())
     };
-    assert_eq!(read("uint8[0] none"), Err("`uint8[0] none` is no field of a message".to_owned()));
+    assert_eq!(read("uint8[0] none"), Err("`uint8[0] none` is not a field of a message".to_owned()));
     assert_eq!(read("uint8 one"), Err("it has more than 4096 numbers".to_owned()));
     assert_eq!(read("string text"), Err("it is cut off".to_owned()));
     assert_eq!(read("uint8 ONLY=1"), Err("it is cut off".to_owned()), "a message without fields takes a byte");

@@ -10,18 +10,18 @@ fn a_run_that_breaks_down_is_said_to_have_ended_after_its_last_sample() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = running();
         interrupt.hear(&schedule(0, 0, &[1.0, 13.0]));
-        idle.attend();
+        idle.poll();
         tick.tick();
         let talking = thread::spawn(move || {
-            idle.attend();
-            idle.attend();
+            idle.poll();
+            idle.poll();
             idle
         });
         tick.tick();
         assert!(!tick.is_on());
         let mut idle = talking.join().unwrap();
         for _ in 0..4 {
-            idle.attend();
+            idle.poll();
         }
         let said = interrupt.said();
         let samples: Vec<u8> = said

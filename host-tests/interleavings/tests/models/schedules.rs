@@ -11,9 +11,9 @@ fn every_step_uses_the_command_of_its_tick_and_none_is_lost() {
         let (mut interrupt, mut tick, mut idle) = running();
         interrupt.hear(&schedule(0, 0, &[1.0, 2.0]));
         interrupt.hear(&schedule(1, 2, &[3.0]));
-        idle.attend();
+        idle.poll();
         tick.tick();
-        let listening = thread::spawn(move || idle.attend());
+        let listening = thread::spawn(move || idle.poll());
         for _ in 0..2 {
             tick.tick();
         }
@@ -30,19 +30,19 @@ fn a_run_that_follows_another_begins_with_its_own_commands_at_once() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = running();
         interrupt.hear(&schedule(0, 0, &[1.0, 2.0]));
-        idle.attend();
+        idle.poll();
         tick.tick();
         tick.tick();
         interrupt.hear(&ToBoard::Stop);
-        idle.attend();
+        idle.poll();
         tick.tick();
-        idle.attend();
+        idle.poll();
         interrupt.hear(&ToBoard::Reset(SETTINGS));
         interrupt.hear(&schedule(0, 0, &[3.0]));
-        idle.attend();
+        idle.poll();
         let talking = thread::spawn(move || {
             for _ in 0..3 {
-                idle.attend();
+                idle.poll();
             }
             idle
         });
@@ -50,7 +50,7 @@ fn a_run_that_follows_another_begins_with_its_own_commands_at_once() {
         tick.tick();
         let mut idle = talking.join().unwrap();
         for _ in 0..2 {
-            idle.attend();
+            idle.poll();
             tick.tick();
         }
         let said = interrupt.said();

@@ -57,7 +57,7 @@ fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
         interrupt.hear(&ToBoard::Reset(SETTINGS));
-        idle.attend();
+        idle.poll();
         let line = thread::spawn(move || {
             interrupt.hear(&ToBoard::Stop);
             interrupt
@@ -88,8 +88,8 @@ fn idle_knows_which_of_the_stops_that_were_heard_it_has_read() {
             interrupt.hear(&ToBoard::Stop);
             interrupt
         });
-        idle.attend();
-        idle.attend();
+        idle.poll();
+        idle.poll();
         let mut interrupt = line.join().unwrap();
         settle(&mut tick, &mut idle);
         assert_eq!(interrupt.said(), [FromBoard::Tripped(Trip::Overtaken)]);
@@ -101,6 +101,6 @@ fn settle(tick: &mut Tick, idle: &mut Idle) {
     for _ in 0..4 {
         tick.tick();
         assert!(!tick.is_on(), "a run was begun, or goes on, after a stop");
-        idle.attend();
+        idle.poll();
     }
 }

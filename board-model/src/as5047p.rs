@@ -155,15 +155,16 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_answered_by_the_next_one_with_an_even_parity() {
+    fn answer_in_next_frame_with_even_parity() {
         let mut encoder = As5047p::new(1, Pin('A', 4));
         encoder.angle = 0x1235;
         let back = frames(&mut encoder, &[&[0xff, 0xff], &[0xff, 0xfc], &[0xff, 0xff]]);
         assert_eq!(back[1..], [0x1235, 0x0180]);
     }
 
+    /// In the next frame, and by a register that is cleared when read.
     #[test]
-    fn errors_are_told_in_the_next_frame_and_by_a_register_that_is_cleared_when_read() {
+    fn errors_reported_until_read() {
         let mut encoder = As5047p::new(1, Pin('A', 4));
         // A wrong parity, an unknown register, and half a frame.
         let back =
@@ -173,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_its_data_sheet_does_not_allow_is_told() {
+    fn data_sheet_violations_reported() {
         let mut encoder = As5047p::new(1, Pin('A', 4));
         assert_eq!(encoder.selected(true, MICROSECOND), None);
         let told = |encoder: &mut As5047p, mode, bit, now| encoder.exchange(0, mode, bit, now).1.unwrap_or_default();

@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_register_whose_clock_is_off_is_not_written() {
+    fn unclocked_register_not_written() {
         let mut machine = machine();
         machine.write(0x4002_0000, 4, 0xa800_0001);
         assert_eq!(said(&machine), ["is written while the clock of GPIOA is off"]);
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_was_just_switched_on_is_read_back_first() {
+    fn enabled_clock_read_back_first() {
         let mut machine = machine();
         machine.write(0x4002_3830, 4, 0x0010_0001);
         machine.write(0x4002_0000, 4, 0xa800_0001);
@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn reserved_bits_and_widths_are_watched() {
+    fn reserved_bits_and_widths_checked() {
         let mut machine = machine();
         machine.write(0x4002_3830, 4, 0x0010_0200);
         assert_eq!(said(&machine), ["reserved bits 0x00000200 are written"]);
@@ -423,7 +423,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_model_lacks_is_said() {
+    fn missing_features_reported() {
         let mut machine = machine();
         machine.read(0x4000_0000, 4);
         machine.read(0x4002_3888, 4);
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peripheral_that_was_held_in_reset_is_as_after_power_up() {
+    fn reset_peripheral_as_after_power_up() {
         let mut machine = machine();
         machine.set_up(0x4002_3844, 1 << 4);
         machine.write(0x4001_1008, 4, 364);
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn time_goes_on_by_cycles_of_the_present_clock() {
+    fn time_advances_with_present_clock() {
         let mut machine = machine();
         machine.count(16_000);
         assert_eq!(machine.time(), 1_000_000_000_000);

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_register_that_is_meant_is_changed() {
+    fn only_selected_register_changed() {
         let tamper = Tamper { address: 8, how: How::Swap(0xf0, 0x20, 0x30) };
         assert_eq!(
             [(8, 0x21), (8, 0x11), (4, 0x21)].map(|(at, value)| tamper.apply(at, value)),

@@ -27,7 +27,10 @@ mod measurement {
         fn joint<const N: usize>(&mut self, name: &str, tables: &'static Tables<f32, N>) {
             let holding = self.one(tables, loaded(tables));
             let apart = self.one(tables, (adrift(), NONE));
-            measuring::say(format_args!("{name};{};{};{holding};{apart}", tables.substeps, tables.verlet.substeps));
+            measuring::print_line(format_args!(
+                "{name};{};{};{holding};{apart}",
+                tables.substeps, tables.verlet.substeps
+            ));
         }
     }
 

@@ -59,7 +59,7 @@ mod measurement {
         }
 
         fn tell(&self) {
-            measuring::say(format_args!(
+            measuring::print_line(format_args!(
                 "role;{};{JOINT_NAME};{PERIODS};{};{};{};{}",
                 self.name, self.sum, self.most, self.at, self.bytes
             ));

@@ -23,7 +23,7 @@ mod measurement {
                 set_mode(mode);
                 let motion::Digests { long, unbounded, tiny, changes } = motion::digests(tables);
                 let (flush, default_nan) = (mode & FLUSH_TO_ZERO != 0, mode & DEFAULT_NAN != 0);
-                measuring::say(format_args!(
+                measuring::print_line(format_args!(
                     "{name},{flush},{default_nan},{:016x},{long:016x},{unbounded:016x},{tiny:016x},{changes}",
                     tables.digest
                 ));

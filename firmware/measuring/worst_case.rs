@@ -77,21 +77,24 @@ mod measurement {
                 classes[class as usize].add(trial_number, instructions);
                 kinds[trial.kind as usize].add(trial_number, instructions);
             }
-            measuring::say(format_args!("joint;{name};{N};{};{};{SEED}", tables.substeps, tables.verlet.substeps));
+            measuring::print_line(format_args!(
+                "joint;{name};{N};{};{};{SEED}",
+                tables.substeps, tables.verlet.substeps
+            ));
             for (class, count) in Class::ALL.iter().zip(classes) {
-                tell("class", class.name(), count);
+                print_count("class", class.name(), count);
             }
             for (kind, count) in Kind::ALL.iter().zip(kinds) {
-                tell("kind", kind.name(), count);
+                print_count("kind", kind.name(), count);
             }
             if let Some((_, trial)) = worst {
-                measuring::say(format_args!("state;{trial:?}"));
+                measuring::print_line(format_args!("state;{trial:?}"));
             }
         }
     }
 
-    fn tell(sort: &str, name: &str, Count { trials, sum, most, trial }: Count) {
-        measuring::say(format_args!("{sort};{name};{trials};{sum};{most};{trial}"));
+    fn print_count(sort: &str, name: &str, Count { trials, sum, most, trial }: Count) {
+        measuring::print_line(format_args!("{sort};{name};{trials};{sum};{most};{trial}"));
     }
 
     #[entry]

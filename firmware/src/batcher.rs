@@ -47,8 +47,9 @@ mod tests {
     use super::*;
     use crate::telemetry::PlantForm;
 
+    /// A batch that was taken leaves an empty one.
     #[test]
-    fn batches_are_numbered_without_gaps_and_come_out_empty_again() {
+    fn batches_numbered_without_gaps() {
         let mut batcher = Batcher::<PlantForm<3>, SAMPLES_PER_BATCH>::default();
         for sequence in 0..3 {
             assert!(matches!(batcher.take(), FromBoard::Samples(batch) if batch.sequence == sequence));

@@ -98,14 +98,14 @@ impl<'a, W: Protocol> Conversation<'a, W> {
             if matches!(outcome.answer, FromBoard::MemoryOutcome(_)) {
                 self.stale = self.line.waiting();
             }
-            self.say(&outcome.answer);
+            self.send(&outcome.answer);
         }
     }
 
     /// Handles at most one frame, one batch of samples, one event and one log message; returns `true` if there was any.
     /// `resources` is called for a report; its argument asks to restart the measurement. Frames come first: otherwise a
     /// line filled with samples would delay the answers to the host.
-    pub fn attend(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
+    pub fn poll(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
         let heard = !self.awaiting && !self.memory_requests.is_busy() && self.has_room() && self.take_held_or_listen();
         let sampled = self.has_room() && self.report_samples();
         let happened = self.has_room() && self.report_event(resources);
@@ -117,7 +117,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         self.line.room() >= MAX_FRAME
     }
 
-    fn say(&mut self, message: &FromBoard) {
+    fn send(&mut self, message: &FromBoard) {
         // Every message of the board fits into a frame: tests of `link` encode the longest of each.
         if let Ok(frame) = encode(message) {
             self.line.write(&frame);
@@ -139,7 +139,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         let at_rest = || !self.is_running() || self.intake.has_caught_up();
         if self.batch.is_full() || (!self.batch.is_empty() && at_rest() && !self.samples.ready()) {
             let message = self.batch.take();
-            self.say(&message);
+            self.send(&message);
             return true;
         }
         taken
@@ -159,22 +159,22 @@ impl<'a, W: Protocol> Conversation<'a, W> {
             Event::ResetDone => {
                 self.intake.begin(self.settings);
                 self.forget_run();
-                self.say(&FromBoard::Hello(self.hello.clone()));
+                self.send(&FromBoard::Hello(self.hello.clone()));
             }
             // The answer follows once flash is written.
             Event::MemoryReady(Ok(())) => {}
-            Event::MemoryReady(Err(why)) => self.say(&FromBoard::MemoryOutcome(why)),
+            Event::MemoryReady(Err(why)) => self.send(&FromBoard::MemoryOutcome(why)),
             Event::MemoryChecked(state) => {
                 self.memory_requests.checked(state);
-                self.say(&FromBoard::MemoryChecked(state));
+                self.send(&FromBoard::MemoryChecked(state));
             }
             // The answer follows once flash is erased.
             Event::MemoryDiscarded => self.memory_requests.discarded(),
-            Event::FaultTaken { taken } => self.say(&FromBoard::FaultTaken { taken }),
-            Event::Refused(trip) | Event::Tripped(trip) => self.say(&FromBoard::Tripped(trip)),
+            Event::FaultTaken { taken } => self.send(&FromBoard::FaultTaken { taken }),
+            Event::Refused(trip) | Event::Tripped(trip) => self.send(&FromBoard::Tripped(trip)),
             Event::Stopped => {
                 if let Some(cause) = self.cause.take() {
-                    self.say(&FromBoard::Tripped(cause));
+                    self.send(&FromBoard::Tripped(cause));
                 }
             }
             Event::Timing(monitor) => {
@@ -184,7 +184,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
                 if self.clear_with_report {
                     self.cleared = counts;
                 }
-                self.say(&FromBoard::Statistics(report));
+                self.send(&FromBoard::Statistics(report));
             }
         }
         true
@@ -218,7 +218,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         }
         let sequence = self.log_sequence;
         self.log_sequence = sequence.wrapping_add(1);
-        self.say(&FromBoard::Log(Log { sequence, bytes }));
+        self.send(&FromBoard::Log(Log { sequence, bytes }));
         true
     }
 
@@ -227,7 +227,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
             return self.listen();
         }
         let taken = self.intake.take_held();
-        self.tell(taken);
+        self.send_outcome(taken);
         !self.intake.holds()
     }
 
@@ -250,8 +250,8 @@ impl<'a, W: Protocol> Conversation<'a, W> {
 
     fn answer(&mut self, message: ToBoard, is_stale: bool) {
         match message {
-            ToBoard::Hello { .. } => self.say(&FromBoard::Hello(self.hello.clone())),
-            ToBoard::Reset(_) if is_stale => self.say(&FromBoard::Tripped(Trip::Overtaken)),
+            ToBoard::Hello { .. } => self.send(&FromBoard::Hello(self.hello.clone())),
+            ToBoard::Reset(_) if is_stale => self.send(&FromBoard::Tripped(Trip::Overtaken)),
             ToBoard::Reset(settings) => self.reset(settings),
             ToBoard::Statistics { reset } => {
                 self.clear_with_report = reset;
@@ -266,9 +266,9 @@ impl<'a, W: Protocol> Conversation<'a, W> {
             commands => match W::timetable(commands) {
                 Some(timetable) => {
                     let taken = self.intake.take(timetable);
-                    self.tell(taken);
+                    self.send_outcome(taken);
                 }
-                None => self.say(&FromBoard::Tripped(Trip::WrongRole)),
+                None => self.send(&FromBoard::Tripped(Trip::WrongRole)),
             },
         }
     }
@@ -293,10 +293,10 @@ impl<'a, W: Protocol> Conversation<'a, W> {
     }
 
     /// Sends the outcome of a schedule.
-    fn tell(&mut self, taken: Taken) {
+    fn send_outcome(&mut self, taken: Taken) {
         match taken {
-            Taken::Accepted(accepted) => self.say(&FromBoard::Accepted(accepted)),
-            Taken::NotRunning => self.say(&FromBoard::Tripped(Trip::NotRunning)),
+            Taken::Accepted(accepted) => self.send(&FromBoard::Accepted(accepted)),
+            Taken::NotRunning => self.send(&FromBoard::Tripped(Trip::NotRunning)),
             Taken::Unfit(trip) => self.trip(trip),
             Taken::Nothing => {}
         }
@@ -305,7 +305,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
     fn begin(&mut self, request: MemoryRequest) {
         match self.memory_requests.begin(request, self.is_running()) {
             Reaction::Order(order) => self.order(order),
-            Reaction::Say(answer) => self.say(&answer),
+            Reaction::Say(answer) => self.send(&answer),
             Reaction::Wait => {}
         }
     }

@@ -83,12 +83,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_version_number_is_read_digit_by_digit() {
+    fn version_number_parsed() {
         assert_eq!([number("0"), number("17"), number("255")], [0, 17, 255]);
     }
 
     #[test]
-    fn a_name_that_is_too_long_is_cut_between_characters() {
+    fn long_name_cut_between_characters() {
         assert_eq!(shortened::<4>("joint").as_str(), "join");
         assert_eq!(shortened::<4>("abcä").as_str(), "abc");
     }

@@ -93,7 +93,7 @@ impl<S: Slots> KeptMemory<S> {
     }
 
     /// Returns the memory; `None` if none is stored or the board has no flash.
-    pub fn recall(&mut self) -> Option<Memory> {
+    pub fn load(&mut self) -> Option<Memory> {
         let (slot, _) = self.newest?;
         match self.content(slot) {
             Content::Kept(_, memory) if memory != NOTHING => Some(memory),
@@ -107,16 +107,16 @@ impl<S: Slots> KeptMemory<S> {
     }
 
     /// Stores a memory; an unchanged memory is not written again, to spare the flash.
-    pub fn keep(&mut self, memory: &Memory) -> MemoryOutcome {
-        if self.recall().as_ref() == Some(memory) { MemoryOutcome::Stored } else { self.put(memory) }
+    pub fn store(&mut self, memory: &Memory) -> MemoryOutcome {
+        if self.load().as_ref() == Some(memory) { MemoryOutcome::Stored } else { self.write_record(memory) }
     }
 
     /// Erases the memory; an empty storage is not written again.
     pub fn erase(&mut self) -> MemoryOutcome {
-        if self.recall().is_none() && !self.is_damaged() {
+        if self.load().is_none() && !self.is_damaged() {
             return MemoryOutcome::Stored;
         }
-        let outcome = self.put(&NOTHING);
+        let outcome = self.write_record(&NOTHING);
         if let (MemoryOutcome::Stored, Some((newest, _))) = (outcome, self.newest) {
             self.slots.erase(newest.other());
         }
@@ -125,7 +125,7 @@ impl<S: Slots> KeptMemory<S> {
 
     /// Writes a newer record into the other slot and reads it back.
     #[inline(never)]
-    fn put(&mut self, memory: &Memory) -> MemoryOutcome {
+    fn write_record(&mut self, memory: &Memory) -> MemoryOutcome {
         if !self.slots.has_supply() {
             return MemoryOutcome::LowSupply;
         }

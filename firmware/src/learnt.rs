@@ -97,7 +97,7 @@ impl RunMemory {
     }
 
     /// Loads the memory into a controller after a reset.
-    pub fn give(&self, port: &mut impl ControllerPort) {
+    pub fn load_into(&self, port: &mut impl ControllerPort) {
         if self.good {
             // The memory was checked when it was taken.
             let _ = port.recall(&self.memory);

@@ -61,7 +61,7 @@ fn count_lost(bytes: usize) {
 }
 
 impl Sink {
-    fn put(&self, bytes: &[u8]) {
+    fn push(&self, bytes: &[u8]) {
         // SAFETY: see `Sync`.
         let queue = unsafe { &mut *self.queue.get() };
         let mut lost = bytes.len();
@@ -89,7 +89,7 @@ unsafe impl defmt::Logger for Logger {
         }
         SINK.masked_before.store(before, Relaxed);
         // SAFETY: see `Sync`.
-        unsafe { &mut *SINK.encoder.get() }.start_frame(|bytes| SINK.put(bytes));
+        unsafe { &mut *SINK.encoder.get() }.start_frame(|bytes| SINK.push(bytes));
     }
 
     unsafe fn flush() {}
@@ -99,7 +99,7 @@ unsafe impl defmt::Logger for Logger {
             return count_lost(bytes.len());
         }
         // SAFETY: see `Sync`.
-        unsafe { &mut *SINK.encoder.get() }.write(bytes, |bytes| SINK.put(bytes));
+        unsafe { &mut *SINK.encoder.get() }.write(bytes, |bytes| SINK.push(bytes));
     }
 
     unsafe fn release() {
@@ -107,7 +107,7 @@ unsafe impl defmt::Logger for Logger {
             return;
         }
         // SAFETY: see `Sync`.
-        unsafe { &mut *SINK.encoder.get() }.end_frame(|bytes| SINK.put(bytes));
+        unsafe { &mut *SINK.encoder.get() }.end_frame(|bytes| SINK.push(bytes));
         SINK.taken.store(false, Relaxed);
         // SAFETY: restores the mask from before `acquire`.
         unsafe { basepri::write(SINK.masked_before.load(Relaxed)) };

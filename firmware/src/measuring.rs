@@ -68,7 +68,7 @@ impl InstructionCounter {
 }
 
 /// Prints a line on the host.
-pub fn say(line: fmt::Arguments<'_>) {
+pub fn print_line(line: fmt::Arguments<'_>) {
     hprintln!("{}", line);
 }
 

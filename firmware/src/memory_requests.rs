@@ -121,11 +121,11 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
         writing: impl FnOnce(&mut dyn FnMut() -> MemoryOutcome) -> MemoryOutcome,
     ) -> Option<FlashOutcome> {
         if let Some(learnt) = self.learnt.dequeue() {
-            return Some(FlashOutcome::written(writing(&mut || kept.keep(learnt.memory()))));
+            return Some(FlashOutcome::written(writing(&mut || kept.store(learnt.memory()))));
         }
         match self.task.take()? {
             FlashTask::Tell(part) => {
-                let memory = kept.recall().unwrap_or(NOTHING);
+                let memory = kept.load().unwrap_or(NOTHING);
                 let (parts, _) = memory.as_chunks::<PART_BYTES>();
                 let bytes = parts.get(usize::from(part)).map(|bytes| bytes.iter().copied().collect());
                 let bytes: Vec<u8, PART_BYTES> = bytes.unwrap_or_default();
@@ -133,7 +133,7 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
             }
             FlashTask::Write => {
                 let received = self.received.as_ref()?;
-                Some(FlashOutcome::written(writing(&mut || kept.keep(received.memory()))))
+                Some(FlashOutcome::written(writing(&mut || kept.store(received.memory()))))
             }
             FlashTask::Erase => {
                 let erased = FlashOutcome::written(writing(&mut || kept.erase()));

@@ -112,7 +112,7 @@ impl<P: ControllerPort> Work for Observing<P> {
     fn reset(&mut self, from_memory: bool) {
         self.port.reset();
         if from_memory {
-            self.run_memory.give(&mut self.port);
+            self.run_memory.load_into(&mut self.port);
         }
         self.next = None;
         self.answer = Answer::default();

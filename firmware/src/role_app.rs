@@ -71,7 +71,7 @@ macro_rules! app {
             /// Loads the parameters saved in flash. Not inlined, so that its stack is released.
             #[inline(never)]
             fn remember(work: &mut RoleWork, kept: &mut KeptMemory<<ThisChip as Chip>::Slots>) -> MemoryState {
-                let judged = kept.recall().map(|memory| work.remember(&memory));
+                let judged = kept.load().map(|memory| work.remember(&memory));
                 match judged {
                     Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),
                     Some(Ok(())) => defmt::info!("what was learnt in earlier runs is at hand"),
@@ -105,7 +105,7 @@ macro_rules! app {
                 let mut meter = IdleMeter::start();
                 let mut last_tick = progress.ticks.load(Relaxed);
                 loop {
-                    let busy = conversation.attend(&mut |reset| Resources {
+                    let busy = conversation.poll(&mut |reset| Resources {
                         idle_permille: meter.permille(reset),
                         static_ram: stack::static_ram(),
                         stack_used: stack::deepest(),

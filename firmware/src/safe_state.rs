@@ -86,12 +86,12 @@ mod tests {
     }
 
     #[test]
-    fn the_enable_output_is_driven_low_from_the_start() {
+    fn enable_output_low_at_start() {
         assert_eq!(SafeState::new(Pin(None)).enable.0, Some(false));
     }
 
     #[test]
-    fn the_enable_output_is_on_in_a_run_only() {
+    fn enable_output_on_only_in_run() {
         let mut safe_state = SafeState::new(Pin(None));
         safe_state.run().unwrap();
         assert_eq!(safe_state.enable.0, Some(true));
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_fault_is_kept_until_the_next_run() {
+    fn first_fault_kept_until_next_run() {
         let mut safe_state = SafeState::new(Pin(None));
         safe_state.trip(Trip::NotFinite { tick: 3 });
         safe_state.trip(Trip::QueueFull);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_tables_are_never_run() {
+    fn bad_tables_never_run() {
         let mut safe_state = SafeState::new(Pin(None));
         safe_state.trip(Trip::BadDigest);
         assert_eq!(safe_state.run(), Err(Trip::BadDigest));

@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn lockstep_waits_at_the_horizon() {
+    fn lockstep_waits_at_horizon() {
         let mut queue = Queue::<Command, 4>::new();
         let (_, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lockstep_run_that_may_not_wait_for_ever_trips_after_the_timeout() {
+    fn lockstep_trips_after_timeout() {
         let mut queue = Queue::<Command, 4>::new();
         let (_, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_is_given_at_its_tick_and_only_then() {
+    fn command_applied_at_its_tick_only() {
         let mut queue = Queue::<Command, 4>::new();
         let (mut entry, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);
@@ -136,8 +136,9 @@ mod tests {
         assert_eq!(given, [None, Some(2.0), None, Some(-1.0), None]);
     }
 
+    /// A command that is queued before the horizon moves is not lost.
     #[test]
-    fn a_command_that_the_tick_sees_before_its_horizon_is_not_lost() {
+    fn early_command_kept() {
         for (mode, waits_forever) in [(RunMode::Lockstep, false), (RunMode::Lockstep, true), (RunMode::Realtime, true)]
         {
             let mut queue = Queue::<Command, 4>::new();
@@ -155,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_starved_run_goes_on_until_the_timeout_and_then_trips() {
+    fn starved_run_trips_after_timeout() {
         let mut queue = Queue::<Command, 4>::new();
         let (mut entry, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);
@@ -170,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_schedule_in_time_ends_the_starvation() {
+    fn schedule_in_time_ends_starvation() {
         let mut queue = Queue::<Command, 4>::new();
         let (_, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_realtime_run_does_not_begin_before_its_first_schedule() {
+    fn realtime_run_waits_for_first_schedule() {
         let mut queue = Queue::<Command, 4>::new();
         let (_, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);
@@ -193,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_for_a_past_tick_trips() {
+    fn command_for_past_tick_trips() {
         let mut queue = Queue::<Command, 4>::new();
         let (mut entry, commands) = queue.split();
         let mut commands = SizedConsumer::<_, 4>::new(commands);

@@ -63,14 +63,14 @@ impl Heard {
     }
 
     /// Counts a good frame; called by one interrupt only.
-    fn hear(&self, stop: bool) {
+    fn count_frame(&self, stop: bool) {
         if stop {
             self.stops.store(self.stops.load(Relaxed).wrapping_add(1), Release);
         }
         self.frames.store(self.frames.load(Relaxed).wrapping_add(1), Release);
     }
 
-    fn lose(&self) {
+    fn count_loss(&self) {
         self.lost.store(self.lost.load(Relaxed).saturating_add(1), Relaxed);
     }
 }
@@ -132,12 +132,12 @@ impl<U: Uart> Serial<'_, U> {
                 break;
             };
             if let Some(frame) = self.scanner.push(byte) {
-                self.heard.hear(ToBoard::is_stop(frame));
+                self.heard.count_frame(ToBoard::is_stop(frame));
             }
-            self.keep(byte);
+            self.queue_byte(byte);
         }
         if self.uart.overran() {
-            self.heard.lose();
+            self.heard.count_loss();
         }
         if more {
             // Bytes that wait outside the UART raise no interrupt.
@@ -147,11 +147,11 @@ impl<U: Uart> Serial<'_, U> {
 
     /// Queues a byte. With a full inbox bytes are dropped, but the interrupt reads on: the next frame may be a stop. A
     /// zero separates an incomplete frame from the frames after it.
-    fn keep(&mut self, byte: u8) {
+    fn queue_byte(&mut self, byte: u8) {
         let kept = (!self.gap || self.inbox.enqueue(0).is_ok()) && self.inbox.enqueue(byte).is_ok();
         self.gap = !kept;
         if !kept {
-            self.heard.lose();
+            self.heard.count_loss();
         }
     }
 
@@ -254,7 +254,7 @@ mod tests {
     fn nothing() {}
 
     #[test]
-    fn bytes_arrive_in_order_and_none_is_lost_while_there_is_room() {
+    fn bytes_arrive_complete_and_in_order() {
         let mut wire = Wire { incoming: (0..3 * INBOX).map(|i| i as u8).collect(), ..Wire::default() };
         let mut line = Line::new();
         let (mut serial, mut end) = line.split(&mut wire, nothing);
@@ -267,8 +267,9 @@ mod tests {
         assert_eq!(end.heard().lost(), 0);
     }
 
+    /// A full inbox loses bytes and counts them; a stop and the frames after the loss still arrive.
     #[test]
-    fn a_full_inbox_costs_counted_bytes_and_no_stop_and_the_frames_after_it_arrive() {
+    fn full_inbox_counts_lost_bytes() {
         let stop = encode(&ToBoard::Stop).unwrap();
         let flood = [7; 2 * INBOX].iter().chain(&stop);
         let mut wire = Wire { incoming: flood.copied().collect(), ..Wire::default() };
@@ -287,8 +288,9 @@ mod tests {
         assert_eq!(kept, [&[0], &stop[..]].concat(), "half a frame is kept apart from what follows");
     }
 
+    /// A UART that needs time is asked to interrupt; one that needs none is called again.
     #[test]
-    fn a_uart_that_needs_time_is_asked_to_interrupt_and_one_that_needs_none_is_called_again() {
+    fn interrupt_requested_from_slow_uart_only() {
         let mut wire = Wire { room: 3, ..Wire::default() };
         let mut line = Line::new();
         let (mut serial, mut end) = line.split(&mut wire, nothing);
@@ -304,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_uart_loses_is_counted() {
+    fn uart_losses_counted() {
         let mut wire = Wire { overran: true, ..Wire::default() };
         let mut line = Line::new();
         let (mut serial, end) = line.split(&mut wire, nothing);

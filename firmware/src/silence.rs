@@ -53,8 +53,9 @@ impl Silence {
 mod tests {
     use super::*;
 
+    /// Also if the tick count wraps.
     #[test]
-    fn silence_begins_anew_with_every_frame_and_the_count_may_wrap() {
+    fn frame_restarts_silence() {
         let mut silence = Silence::new(3);
         for frames in [u32::MAX, 0, 1, 2] {
             assert_eq!(silence.after(frames), Host::HasSpoken);
@@ -65,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_begins_by_a_frame_of_late_only() {
+    fn only_recent_frame_starts_run() {
         let mut silence = Silence::new(3);
         assert!(silence.allows(2, 1), "the reset has just been heard");
         assert_eq!(silence.after(1), Host::HasSpoken);

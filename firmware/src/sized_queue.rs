@@ -20,7 +20,7 @@ impl<'a, T, const PLACES: usize> SizedProducer<'a, T, PLACES> {
 
     /// Adds an entry, or hands it back if there is no room.
     #[inline]
-    pub fn give(&mut self, entry: T) -> Result<(), T> {
+    pub fn enqueue(&mut self, entry: T) -> Result<(), T> {
         // Always true; tells the compiler the number of places.
         if self.0.capacity() == PLACES - 1 { self.0.enqueue(entry) } else { Err(entry) }
     }
@@ -70,14 +70,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_come_out_as_they_went_in_until_there_is_no_room() {
+    fn entries_returned_in_order_until_full() {
         let mut queue = Queue::<u8, 4>::new();
         let (entry, exit) = queue.split();
         let (mut giver, mut taker) = (SizedProducer::<_, 4>::new(entry), SizedConsumer::<_, 4>::new(exit));
         for round in 0..3 {
-            assert_eq!([0, 1, 2].map(|entry| giver.give(entry + round)), [Ok(()); 3]);
+            assert_eq!([0, 1, 2].map(|entry| giver.enqueue(entry + round)), [Ok(()); 3]);
             assert!(!giver.has_room());
-            assert_eq!((giver.give(9), taker.count(), taker.peek()), (Err(9), 3, Some(&round)));
+            assert_eq!((giver.enqueue(9), taker.count(), taker.peek()), (Err(9), 3, Some(&round)));
             assert_eq!([taker.take(), taker.take(), taker.take()], [0, 1, 2].map(|entry| Some(entry + round)));
             assert_eq!(taker.take(), None);
         }

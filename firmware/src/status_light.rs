@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn each_pattern_has_its_own_number_of_flashes() {
+    fn flash_counts_distinct() {
         assert_eq!(flashes(Pattern::Stopped, 6000), 2);
         assert_eq!(flashes(Pattern::Running, 6000), 29);
         assert_eq!(flashes(Pattern::Tripped, 6000), 11);

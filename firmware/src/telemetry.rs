@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_mesh_has_the_lowest_bits() {
+    fn first_mesh_in_lowest_bits() {
         use ContactState::{BackSide, DriveSide, Separated};
         assert_eq!(contact_bits([DriveSide, Separated, BackSide].iter()), 0b10_00_01);
     }

@@ -77,10 +77,11 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.monitor.lateness.record(lateness);
         self.obey();
         let host = self.silence.after(self.heard.frames());
-        let stepped = matches!(self.state(), State::Running) && self.may_go_on(host) && self.advance(timer, lateness);
+        let stepped =
+            matches!(self.state(), State::Running) && self.host_allows_run(host) && self.advance(timer, lateness);
         let end = timer.since_expiry();
         if stepped {
-            self.monitor.step_took(end.saturating_sub(lateness));
+            self.monitor.record_step(end.saturating_sub(lateness));
         }
         if end >= self.period {
             self.monitor.overruns = self.monitor.overruns.saturating_add(1);
@@ -140,15 +141,15 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         };
         self.show_state();
         // There is always room: idle takes the answer to an order before it gives the next order.
-        let _ = self.end.events.give(event);
+        let _ = self.end.events.enqueue(event);
     }
 
     #[inline(never)]
     fn hand_out_memory(&mut self, there_is: bool) {
         let memory = self.work.learnt().filter(|_| there_is);
         // The queue is free: idle has taken the memory before.
-        let given = memory.is_some_and(|memory| self.end.learnt.give(memory.clone()).is_ok());
-        let _ = self.end.events.give(Event::MemoryReady(if given { Ok(()) } else { Err(MemoryOutcome::Nothing) }));
+        let given = memory.is_some_and(|memory| self.end.learnt.enqueue(memory.clone()).is_ok());
+        let _ = self.end.events.enqueue(Event::MemoryReady(if given { Ok(()) } else { Err(MemoryOutcome::Nothing) }));
     }
 
     /// Takes a memory from idle, which sends memories between runs only.
@@ -161,7 +162,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         let Some(learnt) = self.end.remembered.peek() else { return };
         let judged = self.work.remember_learnt(learnt);
         self.end.remembered.take();
-        let _ = self.end.events.give(Event::MemoryChecked(memory_state(Some(judged))));
+        let _ = self.end.events.enqueue(Event::MemoryChecked(memory_state(Some(judged))));
     }
 
     fn reset(&mut self, settings: RunSettings, stops: u32) -> Event {
@@ -190,7 +191,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     }
 
     /// Returns `true` if a frame has arrived in time and none was a stop. Frames that idle has not read yet count.
-    fn may_go_on(&mut self, host: Host) -> bool {
+    fn host_allows_run(&mut self, host: Host) -> bool {
         match host {
             Host::IsThere => true,
             Host::HasSpoken => {
@@ -249,7 +250,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     #[inline(never)]
     fn hand_out_sample(&mut self, computation: u32) {
         let sample = self.work.sample(self.steps, computation.min(u16::MAX.into()) as u16);
-        if self.end.samples.give(sample).is_err() {
+        if self.end.samples.enqueue(sample).is_err() {
             self.monitor.lost_samples = self.monitor.lost_samples.saturating_add(1);
         }
     }
@@ -263,6 +264,6 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.safe_state.trip(trip);
         self.show_state();
         // There is always room: a run trips once, and at most one answer is pending besides.
-        let _ = self.end.events.give(Event::Tripped(trip));
+        let _ = self.end.events.enqueue(Event::Tripped(trip));
     }
 }

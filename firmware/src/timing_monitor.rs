@@ -82,7 +82,7 @@ impl Monitor {
     }
 
     /// Records a tick that stepped.
-    pub fn step_took(&mut self, computation: u32) {
+    pub fn record_step(&mut self, computation: u32) {
         self.steps = self.steps.wrapping_add(1);
         self.computation.record(computation);
         let bin = (computation / self.bin_width.max(1)) as usize;
@@ -97,29 +97,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_times_are_all_zero() {
+    fn zeros_without_times() {
         assert_eq!(MinMeanMax::EMPTY.timing(), Timing { min: 0, mean: 0, max: 0 });
     }
 
     #[test]
-    fn least_mean_and_greatest_are_those_of_the_times() {
+    fn minimum_mean_maximum_correct() {
         let mut spread = MinMeanMax::EMPTY;
         [7, 3, 5].iter().for_each(|&time| spread.record(time));
         assert_eq!(spread.timing(), Timing { min: 3, mean: 5, max: 7 });
     }
 
     #[test]
-    fn the_mean_does_not_overflow_in_a_long_run() {
+    fn mean_without_overflow() {
         let spread =
             MinMeanMax { min: 1, max: u32::MAX, sum: u64::from(u32::MAX) * u64::from(u32::MAX), count: u32::MAX };
         assert_eq!(spread.timing().mean, u32::MAX);
     }
 
+    /// The last bin is open.
     #[test]
-    fn every_step_is_in_the_histogram_once_and_the_last_bin_is_open() {
+    fn histogram_counts_each_step_once() {
         let period = 8400;
         let mut monitor = Monitor::new(period);
-        (0..3 * period).step_by(100).for_each(|time| monitor.step_took(time));
+        (0..3 * period).step_by(100).for_each(|time| monitor.record_step(time));
         assert_eq!(monitor.histogram.iter().sum::<u32>(), monitor.steps);
         assert!(monitor.bin_width * HISTOGRAM_BINS as u32 >= period);
         assert!(monitor.histogram[HISTOGRAM_BINS - 1] >= 2 * period / 100);

@@ -114,7 +114,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.faults = FaultInjector::default();
         self.port.reset();
         if from_memory {
-            self.run_memory.give(&mut self.port);
+            self.run_memory.load_into(&mut self.port);
         }
         self.trajectory = Trajectory::HOLD;
         self.load_torque = 0.0;

@@ -266,8 +266,9 @@ fn converse<W: TestRole>(cases: u32, rng_seed: RngSeed) {
     assert!(quiet == TIMEOUT && runs > cases, "no run came to its timeout, or none began: {quiet}, {runs}");
 }
 
+/// No conversation keeps the output on or mixes up its answers.
 #[test]
-fn no_conversation_keeps_the_output_on_or_mixes_up_its_answers() {
+fn conversations_safe_and_answered() {
     converse::<PlantWork>(150, RngSeed::Fixed(1));
     converse::<ObserverWork>(100, RngSeed::Fixed(1));
     converse::<LoopWork>(100, RngSeed::Fixed(1));
@@ -275,7 +276,7 @@ fn no_conversation_keeps_the_output_on_or_mixes_up_its_answers() {
 
 #[test]
 #[ignore = "long: the same with many more conversations, others every time"]
-fn no_conversation_of_very_many_keeps_the_output_on_or_mixes_up_its_answers() {
+fn many_conversations_safe_and_answered() {
     converse::<PlantWork>(40_000, RngSeed::Random);
     converse::<ObserverWork>(20_000, RngSeed::Random);
     converse::<LoopWork>(20_000, RngSeed::Random);

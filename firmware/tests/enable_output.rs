@@ -64,8 +64,9 @@ fn silence_ends_a_run<W: TestRole>() {
     }
 }
 
+/// Whatever the host sent before.
 #[test]
-fn a_host_that_falls_silent_ends_the_run_in_time_whatever_it_sent_before() {
+fn silent_host_ends_run_in_time() {
     silence_ends_a_run::<PlantWork>();
     silence_ends_a_run::<ObserverWork>();
     silence_ends_a_run::<LoopWork>();
@@ -164,8 +165,9 @@ fn stop_is_heard<W: TestRole>() -> usize {
     states
 }
 
+/// In every state in which the output is on.
 #[test]
-fn a_stop_is_heard_within_a_tick_in_every_state_in_which_the_output_is_on() {
+fn stop_obeyed_within_a_tick() {
     // In real time no schedule is held: a schedule without room ends the run. The role `observer` has no such runs.
     let (lockstep, realtime) = (FILLINGS.len() * KNOWN.len(), FILLINGS.len() * (KNOWN.len() - 1));
     assert_eq!(stop_is_heard::<PlantWork>(), lockstep + realtime);
@@ -173,7 +175,7 @@ fn a_stop_is_heard_within_a_tick_in_every_state_in_which_the_output_is_on() {
     assert_eq!(stop_is_heard::<LoopWork>(), lockstep + realtime);
 }
 
-fn a_horizon_too_far_is_refused<W: TestRole>() {
+fn assert_far_horizon_rejected<W: TestRole>() {
     for mode in MODES {
         let reach = TIMEOUTS_AHEAD * TIMEOUT;
         for (horizon, refused) in [(reach, false), (reach + 1, true), (u32::MAX, true)] {
@@ -188,10 +190,10 @@ fn a_horizon_too_far_is_refused<W: TestRole>() {
 }
 
 #[test]
-fn a_schedule_with_a_far_horizon_is_refused_by_name() {
-    a_horizon_too_far_is_refused::<PlantWork>();
-    a_horizon_too_far_is_refused::<ObserverWork>();
-    a_horizon_too_far_is_refused::<LoopWork>();
+fn far_horizon_rejected() {
+    assert_far_horizon_rejected::<PlantWork>();
+    assert_far_horizon_rejected::<ObserverWork>();
+    assert_far_horizon_rejected::<LoopWork>();
 }
 
 fn a_stop_overtakes_a_reset<W: TestRole>() {
@@ -217,8 +219,9 @@ fn a_stop_overtakes_a_reset<W: TestRole>() {
     }
 }
 
+/// No run begins by a reset that a stop has overtaken.
 #[test]
-fn no_run_begins_by_a_reset_that_a_stop_has_overtaken() {
+fn stop_overtakes_reset() {
     a_stop_overtakes_a_reset::<PlantWork>();
     a_stop_overtakes_a_reset::<ObserverWork>();
     a_stop_overtakes_a_reset::<LoopWork>();
@@ -235,14 +238,14 @@ fn a_run_begins_afresh<W: TestRole>() {
 }
 
 #[test]
-fn a_run_makes_no_step_on_the_schedules_of_the_run_before() {
+fn old_schedules_not_used_in_next_run() {
     a_run_begins_afresh::<PlantWork>();
     a_run_begins_afresh::<ObserverWork>();
     a_run_begins_afresh::<LoopWork>();
 }
 
 #[test]
-fn a_refused_reset_leaves_the_run_as_it_was() {
+fn rejected_reset_leaves_run_unchanged() {
     let mut board = started::<ObserverWork>(RunMode::Lockstep).expect("a run");
     board.send(&ObserverWork::schedule(0, 4, 0..4));
     board.run(2);
@@ -256,7 +259,7 @@ fn a_refused_reset_leaves_the_run_as_it_was() {
 }
 
 #[test]
-fn no_run_begins_by_a_reset_that_came_while_flash_was_written() {
+fn reset_during_flash_write_starts_no_run() {
     let mut board = started::<ObserverWork>(RunMode::Lockstep).expect("a run");
     board.run(1);
     board.send(&ToBoard::Stop);

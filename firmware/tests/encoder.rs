@@ -53,8 +53,9 @@ fn first_reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, Encoder
     list
 }
 
+/// With the time of the request.
 #[test]
-fn an_angle_comes_a_tick_after_it_was_asked_for_with_the_time_of_asking() {
+fn angle_arrives_one_tick_later() {
     let frames = [(ANGLE, 0x1234), (ANGLE, answer(0x2abc)), (ANGLE, answer(0x0001)), (ANGLE, answer(0x3fff))];
     let expected = [
         Err(EncoderFault::Pending),
@@ -66,15 +67,16 @@ fn an_angle_comes_a_tick_after_it_was_asked_for_with_the_time_of_asking() {
 }
 
 #[test]
-fn every_single_flipped_bit_is_found() {
+fn every_flipped_bit_detected() {
     for bit in 0..16 {
         let frames = [(ANGLE, 0), (ANGLE, answer(0x1a5) ^ 1 << bit)];
         assert_eq!(reads(&frames, 2)[1], Err(EncoderFault::Parity), "bit {bit}");
     }
 }
 
+/// The next angle is good.
 #[test]
-fn the_error_flag_is_cleared_by_reading_its_reason_and_the_next_angle_is_good() {
+fn reading_reason_clears_error_flag() {
     let frames = [
         (ANGLE, 0),
         (ANGLE, answer(0x4123)),
@@ -87,15 +89,16 @@ fn the_error_flag_is_cleared_by_reading_its_reason_and_the_next_angle_is_good() 
     assert_eq!(reads(&frames, 3), expected);
 }
 
+/// Whether it is pulled up or down.
 #[test]
-fn a_line_that_nobody_drives_is_no_encoder_whichever_way_it_is_pulled() {
+fn undriven_line_is_no_encoder() {
     assert_eq!(reads(&[(ANGLE, 0xffff), (ANGLE, 0xffff)], 2)[1], Err(EncoderFault::Missing));
     let low = [(ANGLE, 0), (ANGLE, 0), (DIAGNOSTICS, 0), (ANGLE, 0)];
     assert_eq!(reads(&low, 2)[1], Err(EncoderFault::Missing));
 }
 
 #[test]
-fn angle_zero_is_believed_once_the_diagnostics_answer() {
+fn angle_zero_accepted_after_diagnostics() {
     let frames = [(ANGLE, 0), (ANGLE, 0), (DIAGNOSTICS, 0), (ANGLE, answer(0x0180)), (ANGLE, answer(3))];
     let expected =
         [Err(EncoderFault::Pending), Ok(Reading { counts: 0, time: 0 }), Ok(Reading { counts: 3, time: 10 })];
@@ -103,20 +106,21 @@ fn angle_zero_is_believed_once_the_diagnostics_answer() {
 }
 
 #[test]
-fn a_bad_reason_is_a_bad_reading_not_a_reason() {
+fn damaged_reason_is_bad_reading() {
     let frames = [(ANGLE, 0), (ANGLE, answer(0x4123)), (ERRORS, answer(0x4123)), (ANGLE, 0x0001)];
     assert_eq!(reads(&frames, 2)[1], Err(EncoderFault::Parity));
 }
 
 #[test]
-fn a_reading_is_given_the_time_of_its_own_asking_after_a_fault_too() {
+fn reading_time_correct_after_fault() {
     let frames = [(ANGLE, 0), (ANGLE, answer(5) ^ 1), (ANGLE, answer(6))];
     let expected = [Err(EncoderFault::Pending), Err(EncoderFault::Parity), Ok(Reading { counts: 6, time: 10 })];
     assert_eq!(reads(&frames, 3), expected);
 }
 
+/// A magnet that is too weak, too strong or missing is reported until it is good again.
 #[test]
-fn a_magnet_that_is_too_weak_too_strong_or_gone_is_told_by_name_until_it_is_well() {
+fn magnet_faults_reported_by_name() {
     let cases = [
         (0x0980 | 0x7f, EncoderFault::MagnetTooWeak),
         (0x0500, EncoderFault::MagnetTooStrong),

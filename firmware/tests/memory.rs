@@ -81,7 +81,7 @@ fn stop(board: &mut TestBoard<Observing<Direct<'static>>>) {
 fn started_with(flash: Flash) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
     let mut work = Observing::new(controller(), true);
     let mut kept = KeptMemory::open(flash.clone());
-    let judged = kept.recall().map(|memory| work.remember(&memory));
+    let judged = kept.load().map(|memory| work.remember(&memory));
     (TestBoard::with_flash(work, flash), memory_state(judged))
 }
 
@@ -91,7 +91,7 @@ fn started(memory: Memory) -> (TestBoard<Observing<Direct<'static>>>, MemoryStat
 }
 
 #[test]
-fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
+fn learning_continues_after_restart() {
     let (mut board, nothing) = started(NOTHING);
     assert_eq!(nothing, MemoryState::Nothing);
     let learnt = run(&mut board, false, 12_000).estimates;
@@ -109,7 +109,7 @@ fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
 }
 
 #[test]
-fn what_is_no_good_memory_is_told_and_not_used() {
+fn bad_memory_reported_and_unused() {
     let (mut board, _) = started(NOTHING);
     run(&mut board, false, 100);
     stop(&mut board);
@@ -151,7 +151,7 @@ fn memories() -> [Memory; 3] {
 }
 
 #[test]
-fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
+fn power_cut_leaves_old_or_new_memory() {
     let [first, second, third] = memories();
     for has_check_bits in [true, false] {
         // Memories stored before, in this order; `None` at the end is an erase.
@@ -168,7 +168,7 @@ fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
                 let flash = Flash::empty();
                 let mut board = KeptMemory::open(flash.clone());
                 let mut put = |memory: &Option<Memory>| match memory {
-                    Some(memory) => board.keep(memory),
+                    Some(memory) => board.store(memory),
                     None => board.erase(),
                 };
                 history.iter().for_each(|memory| assert_eq!(put(memory), MemoryOutcome::Stored));
@@ -181,11 +181,11 @@ fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
                 let was_cut = flash.cells().until_cut == Some(0);
                 flash.cells().until_cut = None;
                 let mut again = KeptMemory::open(flash.clone());
-                let found = again.recall();
+                let found = again.load();
                 assert!(found == old || found == asked, "cut {cut}: neither the old memory nor the new one is left");
                 assert!(found.is_none() || !again.is_damaged());
                 // After any remains the next memory is stored.
-                assert_eq!(again.keep(&first), MemoryOutcome::Stored);
+                assert_eq!(again.store(&first), MemoryOutcome::Stored);
                 assert_eq!(flash.kept(), Some(first));
                 if !was_cut {
                     break;
@@ -198,32 +198,33 @@ fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
     }
 }
 
+/// Unreadable flash is reported, and repaired by the next memory.
 #[test]
-fn what_cannot_be_read_is_told_and_mended_by_the_next_memory() {
+fn unreadable_memory_repaired_by_next_write() {
     let [first, second, _] = memories();
     let flash = Flash::with([None, None]);
     let mut board = KeptMemory::open(flash.clone());
-    assert_eq!((board.recall(), board.is_damaged()), (None, true));
-    assert_eq!((board.keep(&first), board.is_damaged()), (MemoryOutcome::Stored, false));
+    assert_eq!((board.load(), board.is_damaged()), (None, true));
+    assert_eq!((board.store(&first), board.is_damaged()), (MemoryOutcome::Stored, false));
     assert_eq!(flash.kept(), Some(first));
     flash.cells().is_starved = true;
-    assert_eq!(board.keep(&second), MemoryOutcome::LowSupply);
+    assert_eq!(board.store(&second), MemoryOutcome::LowSupply);
     assert_eq!(flash.kept(), Some(first), "it was not touched");
 }
 
 #[test]
-fn the_newest_is_found_in_whichever_slot_it_is() {
+fn newest_memory_found_in_any_slot() {
     let [first, second, third] = memories();
     let flash = Flash::empty();
     let mut board = KeptMemory::open(flash.clone());
     for memory in [first, second, third].iter().cycle().take(7) {
-        assert_eq!(board.keep(memory), MemoryOutcome::Stored);
+        assert_eq!(board.store(memory), MemoryOutcome::Stored);
         assert_eq!(flash.kept(), Some(*memory));
     }
 }
 
 #[test]
-fn flash_that_takes_nothing_is_found_out() {
+fn unwritable_flash_detected() {
     let (mut board, _) = started(NOTHING);
     board.flash.cells().works = false;
     run(&mut board, false, 10);
@@ -266,7 +267,7 @@ fn learnt() -> Memory {
 }
 
 #[test]
-fn a_memory_moves_from_board_to_board_and_is_erased() {
+fn memory_transferred_and_erased() {
     let memory = learnt();
     let (mut board, _) = started_with(Flash::with([Some([0; RECORD_BYTES]); 2]));
     assert_eq!(
@@ -295,7 +296,7 @@ fn a_memory_moves_from_board_to_board_and_is_erased() {
 }
 
 #[test]
-fn a_memory_that_is_no_good_is_judged_and_never_written() {
+fn bad_memory_never_written() {
     let memory = learnt();
     let (mut board, _) = started(NOTHING);
     let mut damaged = memory;
@@ -315,7 +316,7 @@ fn a_memory_that_is_no_good_is_judged_and_never_written() {
 }
 
 #[test]
-fn a_role_that_learns_nothing_says_so() {
+fn role_without_memory_reports_it() {
     let mut board = TestBoard::new();
     for request in [MemoryRequest::Save, MemoryRequest::Read { part: 0 }, MemoryRequest::Write, MemoryRequest::Erase] {
         board.send(&ToBoard::Memory(request));

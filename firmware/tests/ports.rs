@@ -63,7 +63,7 @@ fn still(number: u32) -> Samples<f32> {
 }
 
 #[test]
-fn a_probe_pushes_through_every_port_that_has_a_controller_behind_it() {
+fn probe_works_through_every_port() {
     let settle = control::PROBE.as_ref().expect("Q1 can be probed").settle;
     let ticks = settle + 100;
     let mut alone = controller();
@@ -90,8 +90,9 @@ fn a_probe_pushes_through_every_port_that_has_a_controller_behind_it() {
     assert_eq!(alone.exchange(&still(ticks), &tick(0).1).unwrap().probed, None);
 }
 
+/// The answers are bit-identical to those of a direct call.
 #[test]
-fn a_guest_in_shared_memory_answers_a_tick_later_with_the_same_bits() {
+fn shared_memory_guest_answers_one_tick_later() {
     let mut memory = SharedMemory::new();
     let (mut host, mut guest) = memory.split();
     let mut behind = controller();
@@ -106,8 +107,9 @@ fn a_guest_in_shared_memory_answers_a_tick_later_with_the_same_bits() {
     assert_eq!(said, expected(49));
 }
 
+/// Nothing waits for a late guest.
 #[test]
-fn a_guest_that_is_late_costs_ticks_without_an_answer_and_nothing_waits() {
+fn late_guest_costs_unanswered_ticks() {
     let mut memory = SharedMemory::new();
     let (mut host, mut guest) = memory.split();
     let mut behind = controller();
@@ -154,16 +156,18 @@ impl SpiDevice for Bus {
     }
 }
 
+/// The answers are bit-identical to those of a direct call.
 #[test]
-fn a_guest_on_spi_answers_a_tick_later_with_the_same_bits() {
+fn spi_guest_answers_one_tick_later() {
     let mut port = SpiPort::new(Bus::new());
     let said: Vec<_> = (0..50).map(tick).map(|(samples, command)| port.exchange(&samples, &command)).collect();
     assert_eq!(said[0], Err(PortError::Damaged), "an empty frame is no answer");
     assert_eq!(said[1..].iter().map(|answer| answer.unwrap()).collect::<Vec<_>>(), sent_of(49));
 }
 
+/// A damaged frame is never taken for an answer.
 #[test]
-fn a_byte_changed_on_spi_costs_one_answer_and_is_never_taken_for_one() {
+fn changed_spi_byte_costs_one_answer() {
     for towards_guest in [true, false] {
         for at in [0, 7, 60, spi::FRAME_BYTES - 1] {
             let bus = Bus::new();
@@ -197,8 +201,9 @@ impl SlaveBus for Wires {
     }
 }
 
+/// Recovers from short, overrun and damaged transfers.
 #[test]
-fn a_slave_recovers_from_short_overrun_and_damaged_transfers_with_the_next_good_one() {
+fn slave_recovers_with_next_good_transfer() {
     let wires = Rc::new(RefCell::new((Err(Broken::Overrun), [9; spi::FRAME_BYTES])));
     let mut slave = SpiSlave::new(Wires(wires.clone(), [0; spi::FRAME_BYTES]), controller());
     assert_eq!(wires.borrow().1, [0; spi::FRAME_BYTES], "there is nothing to say yet");
@@ -229,7 +234,7 @@ fn a_slave_recovers_from_short_overrun_and_damaged_transfers_with_the_next_good_
 }
 
 #[test]
-fn samples_and_answers_fit_into_the_frame_of_spi() {
+fn samples_and_answers_fit_spi_frame() {
     let (samples, command) = tick(3);
     let samples = Samples { time: u32::MAX, motor: Reading { counts: u32::MAX, time: u32::MAX }, ..samples };
     assert!(sealed(&Exchange::new(u32::MAX, &samples, &command), &mut [0; spi::FRAME_BYTES]).is_ok());
@@ -251,7 +256,7 @@ fn answered(tick: u32) -> Answered {
 }
 
 #[test]
-fn the_rate_of_the_serial_line_is_that_of_the_longest_frames() {
+fn line_rate_set_by_longest_frames() {
     let motion = Motion { position: Position { turns: i32::MIN, fraction: 0.0 }, speed: 0.0, acceleration: 0.0 };
     let reading = Reading { counts: u32::MAX, time: u32::MAX };
     let samples = Samples { time: u32::MAX, motor: reading, output: Some(reading), torque: 0.0 };
@@ -293,7 +298,7 @@ impl Uart for End {
 }
 
 #[test]
-fn a_board_on_a_line_is_asked_again_only_once_it_has_answered() {
+fn line_board_asked_after_its_answer_only() {
     let wire = Rc::new(RefCell::new(Wire::default()));
     let mut line = Line::new();
     let (mut uart, end) = line.split(End(wire.clone()), || {});

@@ -53,7 +53,7 @@ fn trips(said: &[FromBoard]) -> Vec<Trip> {
 }
 
 #[test]
-fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
+fn line_observer_bit_identical_to_call() {
     let mut board = observer();
     board.start(RunMode::Lockstep, 1, 1000);
     let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
@@ -75,7 +75,7 @@ fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
 }
 
 #[test]
-fn an_observer_that_is_not_asked_for_estimates_keeps_them_to_its_digest() {
+fn unrequested_estimates_in_digest_only() {
     let mut board = observer();
     board.start(RunMode::Lockstep, 1, 1000);
     let (joint, command) = (VirtualJoint::new(&TABLES, &control::SURROUNDINGS), Trajectory::HOLD.at(0.0, 1.0));
@@ -90,7 +90,7 @@ fn an_observer_that_is_not_asked_for_estimates_keeps_them_to_its_digest() {
 }
 
 #[test]
-fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
+fn silent_controller_ends_safe() {
     let mut board = observer();
     board.start(RunMode::Lockstep, 1, 50);
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
@@ -105,7 +105,7 @@ fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
 }
 
 #[test]
-fn an_observer_does_not_run_without_samples() {
+fn observer_needs_samples() {
     let mut board = observer();
     let settings = RunSettings { mode: RunMode::Realtime, decimation: 1, command_timeout: 100, from_memory: false };
     board.send(&ToBoard::Reset(settings));
@@ -113,8 +113,9 @@ fn an_observer_does_not_run_without_samples() {
     assert_eq!(trips(&board.said()), [Trip::BadSettings]);
 }
 
+/// The torque stays finite.
 #[test]
-fn samples_that_are_no_numbers_are_flagged_and_the_torque_stays_finite() {
+fn nan_samples_flagged() {
     let mut board = observer();
     board.start(RunMode::Lockstep, 1, 1000);
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
@@ -133,8 +134,9 @@ fn samples_that_are_no_numbers_are_flagged_and_the_torque_stays_finite() {
     assert!(board.enable.get());
 }
 
+/// In both modes.
 #[test]
-fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
+fn whole_loop_bit_identical_to_parts() {
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
         let mut board = whole_loop();
         board.start(mode, 7, 1000);
@@ -162,8 +164,9 @@ fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
     }
 }
 
+/// No more faults than fit are accepted.
 #[test]
-fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit() {
+fn loop_faults_accepted_before_start_only() {
     let mut board = whole_loop();
     let fault = |kind| ToBoard::Fault(Fault { start: 20, end: 40, seed: 1, kind });
     let taken = |said: Vec<FromBoard>| {
@@ -213,8 +216,9 @@ fn own_torque(said: &[LoopSample], tick: u32) -> f32 {
     tick.checked_sub(1).map_or(0.0, |before| said[before as usize].torque)
 }
 
+/// They change nothing.
 #[test]
-fn words_for_another_role_are_refused_and_change_nothing() {
+fn messages_for_other_roles_rejected() {
     let mut board = whole_loop();
     board.start(RunMode::Lockstep, 1, 1000);
     board.send(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10, commands: heapless::Vec::new() }));
@@ -224,8 +228,9 @@ fn words_for_another_role_are_refused_and_change_nothing() {
     assert!(samples(said).is_empty() && board.enable.get());
 }
 
+/// The motion is not followed.
 #[test]
-fn a_motion_with_a_number_that_is_none_trips_and_is_not_followed() {
+fn nan_motion_trips() {
     let mut board = whole_loop();
     board.start(RunMode::Lockstep, 1, 1000);
     let commands = [Knot { load_torque: f32::NAN, ..knot(3) }].into_iter().collect();

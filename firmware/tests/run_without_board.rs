@@ -49,8 +49,9 @@ fn statistics(board: &mut TestBoard, reset: bool) -> Statistics {
     statistics.expect("an answer")
 }
 
+/// No sample is lost.
 #[test]
-fn a_lockstep_run_equals_the_model_bit_for_bit_and_loses_nothing() {
+fn lockstep_run_bit_identical_to_model() {
     let torques = [(0, 0.2, 0.0), (100, -0.3, 1.0), (250, 0.1, -1.0)];
     let mut board = TestBoard::new();
     board.start(RunMode::Lockstep, 7, NO_TIMEOUT);
@@ -75,8 +76,9 @@ fn a_lockstep_run_equals_the_model_bit_for_bit_and_loses_nothing() {
     assert_eq!(statistics(&mut board, false).ticks, 400);
 }
 
+/// No sample is lost.
 #[test]
-fn a_host_that_does_not_read_makes_lockstep_wait_and_costs_no_sample() {
+fn lockstep_waits_for_slow_host() {
     let mut board = TestBoard::new();
     board.start(RunMode::Lockstep, 1, NO_TIMEOUT);
     board.schedule(0, 500, &[(0, 0.2, 0.0)]);
@@ -92,7 +94,7 @@ fn a_host_that_does_not_read_makes_lockstep_wait_and_costs_no_sample() {
 }
 
 #[test]
-fn a_host_that_does_not_read_costs_counted_samples_in_realtime() {
+fn realtime_counts_samples_lost_to_slow_host() {
     let mut board = TestBoard::new();
     board.start(RunMode::Realtime, 1, 1000);
     board.schedule(0, 500, &[]);
@@ -106,7 +108,7 @@ fn a_host_that_does_not_read_costs_counted_samples_in_realtime() {
 }
 
 #[test]
-fn a_realtime_run_without_commands_ends_in_the_safe_state() {
+fn realtime_without_commands_ends_safe() {
     let mut board = TestBoard::new();
     board.start(RunMode::Realtime, 10, 50);
     board.schedule(0, 100, &[(0, 0.2, 0.0)]);
@@ -124,8 +126,9 @@ fn a_realtime_run_without_commands_ends_in_the_safe_state() {
     assert_eq!(statistics(&mut board, false).starved, 50);
 }
 
+/// Lockstep waits for a missing schedule.
 #[test]
-fn a_schedule_that_never_arrived_is_counted_and_lockstep_waits_for_it() {
+fn missing_schedule_counted() {
     let mut board = TestBoard::new();
     board.start(RunMode::Lockstep, 10, NO_TIMEOUT);
     board.schedule(0, 100, &[(0, 0.2, 0.0)]);
@@ -142,8 +145,9 @@ fn a_schedule_that_never_arrived_is_counted_and_lockstep_waits_for_it() {
     assert_eq!(statistics(&mut board, false).ticks, 300);
 }
 
+/// A full queue makes the host wait in lockstep, and trips in realtime.
 #[test]
-fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
+fn full_queue_waits_or_trips() {
     let commands = |schedule: u32| -> Vec<(u32, f32, f32)> {
         (0..COMMANDS_PER_SCHEDULE as u32).map(|i| ((schedule * 24 + i) * 10, 0.1, 0.0)).collect()
     };
@@ -167,7 +171,7 @@ fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
 }
 
 #[test]
-fn bad_commands_trip_and_are_not_applied() {
+fn bad_commands_trip() {
     let cases = [
         (vec![(5, f32::NAN, 0.0)], Trip::BadCommand { tick: 5 }),
         (vec![(5, 0.0, f32::INFINITY)], Trip::BadCommand { tick: 5 }),
@@ -187,7 +191,7 @@ fn bad_commands_trip_and_are_not_applied() {
 }
 
 #[test]
-fn a_fault_lasts_until_a_reset() {
+fn fault_lasts_until_reset() {
     let mut board = TestBoard::new();
     board.schedule(0, 10, &[]);
     board.run(2);
@@ -204,7 +208,7 @@ fn a_fault_lasts_until_a_reset() {
 }
 
 #[test]
-fn settings_that_cannot_be_run_with_are_refused() {
+fn unusable_settings_rejected() {
     for (decimation, command_timeout) in [(0, 1), (1, 0)] {
         let mut board = TestBoard::new();
         let settings =
@@ -216,8 +220,9 @@ fn settings_that_cannot_be_run_with_are_refused() {
     }
 }
 
+/// A stop switches the output off after all samples are sent.
 #[test]
-fn stop_switches_the_output_off_after_every_sample_is_out() {
+fn stop_sends_all_samples_first() {
     let mut board = TestBoard::new();
     board.start(RunMode::Lockstep, 1, NO_TIMEOUT);
     assert!(board.enable.get());
@@ -230,7 +235,7 @@ fn stop_switches_the_output_off_after_every_sample_is_out() {
 }
 
 #[test]
-fn tables_that_do_not_match_their_digest_are_never_run() {
+fn tables_with_wrong_digest_never_run() {
     let mut tables = TABLES.clone();
     tables.tick_rate += 1;
     let mut board = TestBoard::with_tables(Box::leak(Box::new(tables)));
@@ -245,8 +250,9 @@ fn tables_that_do_not_match_their_digest_are_never_run() {
     assert!(!board.enable.get());
 }
 
+/// The counts can be cleared.
 #[test]
-fn ticks_that_outlast_their_period_are_counted_and_the_counts_can_be_cleared() {
+fn late_ticks_counted() {
     let mut board = TestBoard::new();
     board.start(RunMode::Lockstep, 1000, NO_TIMEOUT);
     board.schedule(0, 10, &[]);
@@ -264,7 +270,7 @@ fn ticks_that_outlast_their_period_are_counted_and_the_counts_can_be_cleared() {
 }
 
 #[test]
-fn garbage_on_the_line_is_counted_and_does_no_harm() {
+fn garbage_counted_and_harmless() {
     let mut board = TestBoard::new();
     board.start(RunMode::Lockstep, 1, NO_TIMEOUT);
     board.send_bytes(&[1, 2, 3, 0, 9, 9, 0]);
@@ -275,7 +281,7 @@ fn garbage_on_the_line_is_counted_and_does_no_harm() {
 }
 
 #[test]
-fn the_board_says_who_it_is_in_every_state() {
+fn identity_sent_in_every_state() {
     let mut board = TestBoard::new();
     for _ in 0..3 {
         board.send(&ToBoard::Hello { protocol: 99 });
@@ -291,7 +297,7 @@ fn the_board_says_who_it_is_in_every_state() {
 }
 
 #[test]
-fn a_run_after_a_reset_equals_the_first() {
+fn run_after_reset_equals_first() {
     let mut board = TestBoard::new();
     let mut runs = Vec::new();
     for _ in 0..2 {
@@ -310,7 +316,7 @@ fn a_run_after_a_reset_equals_the_first() {
 }
 
 #[test]
-fn a_fault_is_told_after_the_last_sample_of_its_run() {
+fn fault_sent_after_last_sample() {
     let mut board = TestBoard::new();
     board.start(RunMode::Realtime, 1, 8);
     board.schedule(0, 2, &[]);

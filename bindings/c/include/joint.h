@@ -1,5 +1,5 @@
 /*
- * Forwards to lostmotion/joint.h: a header called joint.h may be a robot's own.
+ * Forwards to lostmotion/joint.h: the name joint.h may collide with a header of the caller.
  * MIT OR Apache-2.0.
  */
 #ifndef LOSTMOTION_OLD_JOINT_H

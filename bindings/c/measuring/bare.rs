@@ -6,16 +6,16 @@ use model_core::observer::{Estimates, MAPPED, Observer, Samples};
 
 use crate::compensation::{JointCompensation, JointMotion};
 use crate::estimates::JointSamples;
-use crate::object::{look, open};
+use crate::object::{open, open_shared};
 use crate::observer::{AnyObserver, JointObserver};
 
 /// Storage for an input or output of a step.
-pub type Room = [u64; 32];
+pub type StepStorage = [u64; 32];
 
 /// Converts samples to the core's form.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_bare_samples(samples: *const JointSamples, to: *mut Room) {
-    const { assert!(size_of::<Samples<f32>>() <= size_of::<Room>()) };
+pub unsafe extern "C" fn joint_bare_samples(samples: *const JointSamples, to: *mut StepStorage) {
+    const { assert!(size_of::<Samples<f32>>() <= size_of::<StepStorage>()) };
     // SAFETY: a valid pointer.
     if let Ok(samples) = unsafe { (*samples).samples() } {
         // SAFETY: a valid pointer to storage that is large enough.
@@ -25,8 +25,8 @@ pub unsafe extern "C" fn joint_bare_samples(samples: *const JointSamples, to: *m
 
 /// Converts a command to follow a motion to the core's form.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_bare_command(now: *const JointMotion, ahead: *const JointMotion, to: *mut Room) {
-    const { assert!(size_of::<Command<f32>>() <= size_of::<Room>()) };
+pub unsafe extern "C" fn joint_bare_command(now: *const JointMotion, ahead: *const JointMotion, to: *mut StepStorage) {
+    const { assert!(size_of::<Command<f32>>() <= size_of::<StepStorage>()) };
     // SAFETY: valid pointers, and storage that is large enough.
     unsafe {
         let (now, ahead) = (*(*now).motion(), Some(*(*ahead).motion()));
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn joint_bare_observer(observer: *mut JointObserver) -> *m
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn joint_bare_estimates(observer: *const JointObserver) -> *const Estimates<f32> {
     // SAFETY: a valid pointer.
-    unsafe { look::<AnyObserver>(observer) }.map_or(core::ptr::null(), |object| object.value.estimates())
+    unsafe { open_shared::<AnyObserver>(observer) }.map_or(core::ptr::null(), |object| object.value.estimates())
 }
 
 /// The core's compensation in an object.
@@ -57,7 +57,10 @@ pub unsafe extern "C" fn joint_bare_compensation(of: *mut JointCompensation) -> 
 
 /// Steps an observer.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_bare_observer_step(observer: *mut Observer<'static, f32, MAPPED>, from: *const Room) {
+pub unsafe extern "C" fn joint_bare_observer_step(
+    observer: *mut Observer<'static, f32, MAPPED>,
+    from: *const StepStorage,
+) {
     // SAFETY: valid pointers.
     unsafe { (*observer).step(&*from.cast::<Samples<f32>>()) };
 }
@@ -67,10 +70,10 @@ pub unsafe extern "C" fn joint_bare_observer_step(observer: *mut Observer<'stati
 pub unsafe extern "C" fn joint_bare_compensation_step(
     compensation: *mut Compensation<'static, f32>,
     estimates: *const Estimates<f32>,
-    command: *const Room,
-    to: *mut Room,
+    command: *const StepStorage,
+    to: *mut StepStorage,
 ) {
-    const { assert!(size_of::<ControlOutput<f32>>() <= size_of::<Room>()) };
+    const { assert!(size_of::<ControlOutput<f32>>() <= size_of::<StepStorage>()) };
     // SAFETY: valid pointers, and storage that is large enough.
     unsafe {
         to.cast::<ControlOutput<f32>>().write((*compensation).step(&*estimates, &*command.cast::<Command<f32>>()))

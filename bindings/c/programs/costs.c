@@ -1,6 +1,6 @@
 /*
- * Instructions of every call, counted by SysTick on an emulated machine that lets a fixed time pass for each, over the closed
- * loop of run.h; with MEASURING beside the core's own steps on the same numbers.
+ * Counts the instructions of every call over the closed loop of run.h, by SysTick of an emulated machine on which each
+ * instruction takes a fixed time; with MEASURING also those of the core's own steps on the same numbers.
  */
 #include "run.h"
 #include "say.h"
@@ -61,7 +61,7 @@ static void tell(const Cost *cost) {
     } while (0)
 
 #ifdef MEASURING
-/* Of bindings/c/measuring/bare.rs. */
+/* Defined in bindings/c/measuring/bare.rs. */
 void joint_bare_samples(const JointSamples *samples, uint64_t *to);
 void joint_bare_command(const JointMotion *now, const JointMotion *ahead, uint64_t *to);
 void *joint_bare_observer(JointObserver *observer);

@@ -1,11 +1,11 @@
-/* What a call of the library is expected to answer. */
+/* Expected statuses of calls. */
 #ifndef EXPECT_H
 #define EXPECT_H
 
 #include <lostmotion/joint.h>
 #include "say.h"
 
-/* Whether a status is the expected one; if not, says which call it was and what it answered. */
+/* Returns whether a status is the expected one; if not, prints the call and its status. */
 static inline int is(JointStatus found, JointStatus expected, const char *what) {
     if (found != expected) {
         say(what);

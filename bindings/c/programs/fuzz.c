@@ -1,6 +1,6 @@
 /*
- * Callers that get it wrong: random sequences of calls with wrong pointers, sizes, tables, numbers and order, every buffer
- * ending at a page that must not be touched. A wrong call must say so and change nothing; a right one must say that it is.
+ * Fuzz test: random sequences of calls with wrong pointers, sizes, tables, numbers and order. Every buffer ends at a
+ * protected page. A wrong call must return an error and change nothing; a right call must return JOINT_STATUS_OK.
  *
  *     fuzz SEQUENCES SEED
  */
@@ -18,7 +18,7 @@
 
 enum { BUFFERS = 18, CALLS = 12 };
 
-/* Where a call can find something: its place, size, and what it looked like before the call. */
+/* Argument of a call: place, size, and content before the call. */
 typedef struct Buffer {
     unsigned char *at, *before;
     size_t bytes;
@@ -38,7 +38,7 @@ static uint32_t chance(uint32_t below) {
     return (uint32_t)(state >> 32) % below;
 }
 
-/* A buffer of so many bytes that ends where a page begins which nobody may touch. */
+/* Returns a buffer that ends where a protected page begins. */
 static void *guarded(size_t bytes) {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     const size_t pages = (bytes + page - 1u) / page;
@@ -56,7 +56,7 @@ static void *guarded(size_t bytes) {
     return buffer->at;
 }
 
-/* A good pointer, or one in eight a wrong one: nothing, misaligned, or an object of another kind. */
+/* Returns a good pointer or, one time in eight, a wrong one: NULL, misaligned, or an object of another kind. */
 static void *pointer(void *good, void *other) {
     switch (chance(24)) {
     case 0:
@@ -153,7 +153,7 @@ int main(int count, char **arguments) {
     memcpy(tables, tables_of_test, sizeof tables_of_test);
     damaged = damaged_tables;
     for (sequence = 0; sequence < sequences; sequence++) {
-        /* What is started, in this sequence: observers, compensation, probe, plant. */
+        /* Objects started in this sequence: observers, compensation, probe, plant. */
         int started[5] = {0, 0, 0, 0, 0}, stepped[2] = {0, 0};
         int saved = 0, call;
         unsigned index;
@@ -167,7 +167,7 @@ int main(int count, char **arguments) {
             JointStatus status;
             uint32_t kind = chance(20);
             is_wrong = 0;
-            /* The first calls start things more often than not. */
+            /* Most of the first calls start objects. */
             if (call < 5 && chance(4) != 0) {
                 kind = (uint32_t)call;
             }
@@ -238,7 +238,7 @@ int main(int count, char **arguments) {
                 status = joint_tables_facts(from, size(sizeof tables_of_test), chance(2) ? facts : NULL);
                 break;
             case 6:
-                /* An object that was moved is none. */
+                /* A moved object is invalid. */
                 memcpy(copy, observer, sizeof *copy);
                 memcpy(buffers[2].before, copy, sizeof *copy);
                 is_wrong = 1;
@@ -263,7 +263,7 @@ int main(int count, char **arguments) {
                 JointMotion *const later = chance(2) ? ahead : NULL;
                 is_wrong |= !started[which] || !started[2];
                 if (later == NULL && !(ahead->speed_rad_per_s - ahead->speed_rad_per_s == 0.0f)) {
-                    /* Nobody looks at that number. */
+                    /* The library does not read this number. */
                     continue;
                 }
                 status = joint_compensation_follow((JointCompensation *)to, (JointObserver *)seen,
@@ -296,7 +296,7 @@ int main(int count, char **arguments) {
             case 14: {
                 void *const to = pointer(observer, probe);
                 const size_t bytes = size(JOINT_MEMORY_BYTES);
-                /* Whether it is this kind of observer's, nobody here keeps account of. */
+                /* The program does not track whether the memory is of this kind of observer. */
                 const int sure = is_wrong || !started[which] || stepped[which] || !saved;
                 status = joint_observer_load((JointObserver *)to, memory, bytes);
                 is_wrong = sure || status != JOINT_STATUS_OK;

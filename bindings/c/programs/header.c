@@ -1,5 +1,5 @@
 /*
- * A header and a library of one version work together; a header of another version is told, and nothing is written.
+ * A header and a library of one version work together; a header of another version is rejected, and nothing is written.
  */
 #include "expect.h"
 #include "say.h"

@@ -1,4 +1,4 @@
-/* Where there is an operating system. */
+/* Output and exit on an operating system. */
 #include "say.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /*
- * The width probe against a plant whose link somebody holds, then what was learnt, saved and given to another observer.
- * Prints every torque and width into a digest, and the width.
+ * Runs the width probe on a plant whose link is held, then saves the memory and loads it into another observer. Prints a
+ * digest of all torques and widths, and the width.
  */
 #include "expect.h"
 #include "run.h"

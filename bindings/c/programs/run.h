@@ -1,8 +1,8 @@
 /*
- * A closed loop of plant, observer and compensation, whose every period goes into a digest: run on two machines, it tells
- * whether they do the same in every bit. The motion is made of whole numbers and single multiplications, so that no flag of
- * the compiler changes it: to and fro by a twentieth of a turn, bang-bang, every other time as a spring and damper, with a
- * push that changes sides and an output encoder that falls silent.
+ * A closed loop of plant, observer and compensation with a digest over every period, which shows whether two machines
+ * compute the same bits. The motion uses whole numbers and single multiplications only, so that no compiler flag changes
+ * it: back and forth by a twentieth of a turn at full acceleration, every other time as spring and damper, with a push that
+ * changes its side and an output encoder that stops answering.
  */
 #ifndef RUN_H
 #define RUN_H
@@ -34,7 +34,7 @@ typedef struct Run {
     JointCompensation compensation;
     uint64_t digest;
     uint32_t period;
-    /* Control periods in a ten-thousandth of a second. */
+    /* Control periods per 0.1 ms. */
     uint32_t scale;
     /* Periods from now to the motion ahead. */
     uint32_t lead;
@@ -90,7 +90,7 @@ static inline JointStatus run_start(Run *run, const uint64_t *tables, size_t byt
     return status;
 }
 
-/* Takes what a period gave into the digest. */
+/* Adds the results of a period to the digest. */
 static inline void run_note(Run *run, uint64_t plant_digest) {
     const float said[] = {
         run->torque.motor_torque_Nm,          run->torque.trust,

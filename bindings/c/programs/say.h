@@ -1,16 +1,16 @@
-/* Lines for whoever runs a program: on the standard output, on a host and through the emulator alike. */
+/* Prints lines to the standard output, on a host and through the emulator. */
 #ifndef SAY_H
 #define SAY_H
 
 #include <stdint.h>
 
-/* A text as it is. */
+/* Prints a text. */
 void say(const char *text);
 
-/* The end: zero is good. Does not return. */
+/* Ends the program with a status; zero is success. Does not return. */
 void end(int status);
 
-/* A number in sixteen hexadecimal digits. */
+/* Prints a number in sixteen hexadecimal digits. */
 static inline void say_hexadecimal(uint64_t number) {
     char digits[17];
     int place;
@@ -22,7 +22,7 @@ static inline void say_hexadecimal(uint64_t number) {
     say(digits);
 }
 
-/* A number in decimal digits. */
+/* Prints a number in decimal digits. */
 static inline void say_decimal(uint64_t number) {
     char digits[21];
     int place = 20;

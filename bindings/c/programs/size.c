@@ -1,4 +1,4 @@
-/* As much of the library as a kind of firmware takes, for its size: chosen by one of the names below. */
+/* Links the part of the library that a kind of firmware uses, to measure its size: chosen by one of the names below. */
 #include "say.h"
 
 #include <lostmotion/joint.h>

@@ -1,6 +1,6 @@
 /*
- * Stack that every call needs below its caller, arguments on the stack included: the free stack is painted before a call and
- * searched for the lowest word that was overwritten after it. Calls of a control period are measured over a second of the
+ * Measures the stack that every call needs below its caller, including arguments on the stack: paints the free stack before
+ * a call and finds the lowest overwritten word after it. Calls of a control period are measured over one second of the
  * closed loop of run.h.
  */
 #include "run.h"
@@ -9,7 +9,7 @@
 
 #define PAINT 0xC5A35AC5u
 #define PERIODS 10000u
-/* Words that are painted: for a call that starts, saves or loads, and for one of a control period. */
+/* Painted words: for calls that start, save or load, and for calls of a control period. */
 #define MOST 4096u
 #define MOST_OF_A_PERIOD 1024u
 
@@ -64,7 +64,7 @@ static JointStatus plant_digest(void) { return joint_plant_digest(&run.plant, &d
 static JointStatus check_step(void) { return joint_wiring_step(&wiring, &samples, 0.0f, &wiring_step); }
 static JointStatus check_verdicts(void) { return joint_wiring_verdicts(&wiring, &verdicts); }
 
-/* Those that start come first, in an order that works. */
+/* Calls that start objects come first, in a valid order. */
 static Stack starting[] = {
     {"joint_tables_facts", tables_facts, 0},
     {"joint_plant_start", plant_start, 0},
@@ -87,7 +87,7 @@ static Stack running[] = {
     {"joint_plant_digest", plant_digest, 0},
 };
 
-/* In place of the compensation. */
+/* Instead of the compensation. */
 static Stack probing[] = {
     {"joint_probe_step", probe_step, 0},
 };
@@ -118,7 +118,7 @@ static void tell(const Stack *stack, uint32_t words) {
     say("stack;");
     say(stack->name);
     say(";");
-    /* Where all that was painted is gone, there was more. */
+    /* If every painted word was overwritten, the call may have used more. */
     say_decimal(stack->bytes >= 4u * words ? 0u : stack->bytes);
     say("\n");
 }

@@ -1,6 +1,6 @@
 /*
- * Whether the library works here: the closed loop of run.h for so many periods, and its digest. EXPECTED_DIGEST is that of
- * the core itself, in Rust, made when this program was.
+ * Checks that the library works on this machine: runs the closed loop of run.h and compares its digest. EXPECTED_DIGEST is
+ * the digest of the Rust core, computed when the archive was built.
  */
 #include "run.h"
 #include "say.h"

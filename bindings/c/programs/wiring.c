@@ -1,6 +1,6 @@
 /*
- * The wiring check against a plant: wired rightly, and with an output encoder, a motor encoder or a torque that is reversed.
- * Prints a digest of every torque, and what each check has found.
+ * Runs the wiring check on a plant: wired correctly, and with output encoder, motor encoder or torque reversed. Prints a
+ * digest of all torques, and the verdicts of each check.
  */
 #include "expect.h"
 #include "run.h"

@@ -13,7 +13,7 @@ use table_blob::Blob;
 
 use crate::estimates::JointContact;
 use crate::fp_mode;
-use crate::object::{Kind, Storage, marked, start};
+use crate::object::{Kind, Storage, start, started_object};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -32,7 +32,7 @@ impl Kind for Compensation<'static, f32> {
 }
 
 /// Asserts that a struct of the header begins with the memory layout of the core's struct.
-macro_rules! alike {
+macro_rules! assert_same_layout {
     ($own:ty, $core:ty, $($field:ident: $($path:ident).+),+) => {
         const {
             assert!(size_of::<$own>() >= size_of::<$core>() && align_of::<$own>() == 4 && align_of::<$core>() == 4);
@@ -43,7 +43,7 @@ macro_rules! alike {
 
 /// Limit of a fraction of a turn [turns]: counts, degrees and most radians exceed it, while a set-point may cross a
 /// turn before it carries the whole one over.
-const MOST_FRACTION: f32 = 1.0;
+const MAX_FRACTION: f32 = 1.0;
 
 /// Motion of the link at one time, on the scale of the observer's link shaft.
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +63,7 @@ impl JointMotion {
     /// The core's motion, which has the same memory layout.
     #[inline(always)]
     pub(crate) fn motion(&self) -> &Motion<f32> {
-        alike!(JointMotion, Motion<f32>, turns: position.turns, fraction_turns: position.fraction,
+        assert_same_layout!(JointMotion, Motion<f32>, turns: position.turns, fraction_turns: position.fraction,
             speed_rad_per_s: speed, acceleration_rad_per_s2: acceleration);
         // SAFETY: equal types at equal offsets, as asserted; every bit pattern is valid.
         unsafe { &*ptr::from_ref(self).cast() }
@@ -71,7 +71,7 @@ impl JointMotion {
 
     /// Adds zero times each number to a sum; the result is zero only if all numbers are finite.
     #[inline(always)]
-    fn nothing(&self, before: f32) -> f32 {
+    fn finite_probe(&self, before: f32) -> f32 {
         before + 0.0 * self.fraction_turns + 0.0 * self.speed_rad_per_s + 0.0 * self.acceleration_rad_per_s2
     }
 }
@@ -98,7 +98,7 @@ impl JointImpedance {
     /// The core's impedance point, which has the same memory layout.
     #[inline(always)]
     fn point(&self) -> &ImpedancePoint<f32> {
-        alike!(JointImpedance, ImpedancePoint<f32>, turns: position.turns, fraction_turns: position.fraction,
+        assert_same_layout!(JointImpedance, ImpedancePoint<f32>, turns: position.turns, fraction_turns: position.fraction,
             speed_rad_per_s: speed, torque_Nm: torque, stiffness_Nm_per_rad: stiffness, damping_Nm_s_per_rad: damping);
         // SAFETY: equal types at equal offsets, as asserted; every bit pattern is valid.
         unsafe { &*ptr::from_ref(self).cast() }
@@ -106,7 +106,7 @@ impl JointImpedance {
 
     /// Zero times each number; zero only if all numbers are finite.
     #[inline(always)]
-    fn nothing(&self) -> f32 {
+    fn finite_probe(&self) -> f32 {
         let spring = 0.0 * self.stiffness_Nm_per_rad + 0.0 * self.damping_Nm_s_per_rad + 0.0 * self.torque_Nm;
         0.0 * self.fraction_turns + 0.0 * self.speed_rad_per_s + spring
     }
@@ -115,9 +115,9 @@ impl JointImpedance {
 /// Returns whether a sum of products with zero is zero. Zero times infinity or NaN is a quiet NaN, which has this bit
 /// set; zero does not. The test takes fewer instructions than the flags of a comparison.
 #[inline(always)]
-fn is_zero(nothing: f32) -> bool {
+fn all_finite(finite_probe: f32) -> bool {
     const QUIET: u32 = 1 << 22;
-    nothing.to_bits() & QUIET == 0
+    finite_probe.to_bits() & QUIET == 0
 }
 
 /// Stage of the compensation.
@@ -170,9 +170,9 @@ impl JointTorque {
     /// # Safety
     /// The pointer is aligned, not NULL, and valid for writes.
     #[inline(always)]
-    unsafe fn give(of: &ControlOutput<f32>, to: *mut Self) {
+    unsafe fn write_to(of: &ControlOutput<f32>, to: *mut Self) {
         const NUMBERS: usize = 5;
-        alike!(JointTorque, ControlOutput<f32>, motor_torque_Nm: torque, demand_Nm: demand, load_Nm: load, trust: trust);
+        assert_same_layout!(JointTorque, ControlOutput<f32>, motor_torque_Nm: torque, demand_Nm: demand, load_Nm: load, trust: trust);
         let stage = match of.stage {
             Stage::Touching => JointStage::Touching,
             Stage::Crossing => JointStage::Crossing,
@@ -229,18 +229,18 @@ pub unsafe extern "C" fn joint_compensation_follow(
 ) -> JointStatus {
     let objects = [compensation.addr(), observer.addr()];
     if !all_usable(objects, [now.addr(), torque.addr()], ahead.addr()) {
-        return why(objects, [now.addr(), torque.addr()]);
+        return unusable_status(objects, [now.addr(), torque.addr()]);
     }
     fp_mode::standard(|| {
         // SAFETY: aligned, and not NULL except where NULL is allowed; the rest is the caller's promise, as required by
         // the header.
         let (now, ahead) = unsafe { (&*now, ahead.as_ref()) };
-        let nothing = now.nothing(0.0);
-        if !is_zero(ahead.map_or(nothing, |ahead| ahead.nothing(nothing))) {
+        let finite_probe = now.finite_probe(0.0);
+        if !all_finite(ahead.map_or(finite_probe, |ahead| ahead.finite_probe(finite_probe))) {
             return JointStatus::NotFinite;
         }
         let fraction = ahead.map_or(0.0, |ahead| ahead.fraction_turns);
-        if now.fraction_turns.abs() > MOST_FRACTION || fraction.abs() > MOST_FRACTION {
+        if now.fraction_turns.abs() > MAX_FRACTION || fraction.abs() > MAX_FRACTION {
             return JointStatus::FractionOutOfRange;
         }
         let command = CommandRef::Position { now: now.motion(), ahead: ahead.map(JointMotion::motion) };
@@ -260,15 +260,15 @@ pub unsafe extern "C" fn joint_compensation_yield(
 ) -> JointStatus {
     let objects = [compensation.addr(), observer.addr()];
     if !all_usable(objects, [impedance.addr(), torque.addr()], 0) {
-        return why(objects, [impedance.addr(), torque.addr()]);
+        return unusable_status(objects, [impedance.addr(), torque.addr()]);
     }
     fp_mode::standard(|| {
         // SAFETY: aligned and not NULL; the rest is the caller's promise, as required by the header.
         let impedance = unsafe { &*impedance };
-        if !is_zero(impedance.nothing()) {
+        if !all_finite(impedance.finite_probe()) {
             return JointStatus::NotFinite;
         }
-        if impedance.fraction_turns.abs() > MOST_FRACTION {
+        if impedance.fraction_turns.abs() > MAX_FRACTION {
             return JointStatus::FractionOutOfRange;
         }
         // SAFETY: as above.
@@ -288,7 +288,7 @@ fn all_usable([one, two]: [usize; 2], [three, four]: [usize; 2], or_null: usize)
 
 /// Status for unusable pointers.
 #[cold]
-fn why([one, two]: [usize; 2], [three, four]: [usize; 2]) -> JointStatus {
+fn unusable_status([one, two]: [usize; 2], [three, four]: [usize; 2]) -> JointStatus {
     let is_null = one == 0 || two == 0 || three == 0 || four == 0;
     if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
 }
@@ -302,9 +302,9 @@ unsafe fn step(
     torque: *mut JointTorque,
 ) -> JointStatus {
     // SAFETY: the caller's promise; different marks show that the objects are distinct.
-    let (Some(object), Some(seen)) =
-        (unsafe { (marked::<Compensation<'static, f32>>(compensation), marked::<AnyObserver>(observer.cast_mut())) })
-    else {
+    let (Some(object), Some(seen)) = (unsafe {
+        (started_object::<Compensation<'static, f32>>(compensation), started_object::<AnyObserver>(observer.cast_mut()))
+    }) else {
         return JointStatus::NotStarted;
     };
     if !object.has_tables_of(seen) {
@@ -312,6 +312,6 @@ unsafe fn step(
     }
     let shaped = object.value.step_by_reference(seen.value.estimates(), command);
     // SAFETY: aligned, not NULL, and valid for writes.
-    unsafe { JointTorque::give(&shaped, torque) };
+    unsafe { JointTorque::write_to(&shaped, torque) };
     JointStatus::Ok
 }

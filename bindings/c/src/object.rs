@@ -32,12 +32,12 @@ impl<K> Object<K> {
     #[inline(always)]
     pub fn has_tables_of<L>(&self, other: &Object<L>) -> bool {
         // Without copies of the tables the addresses are equal.
-        self.tables == other.tables || same(self.tables_digest, other.tables_digest)
+        self.tables == other.tables || digests_equal(self.tables_digest, other.tables_digest)
     }
 }
 
 #[cold]
-fn same(one: u64, other: u64) -> bool {
+fn digests_equal(one: u64, other: u64) -> bool {
     one == other
 }
 
@@ -76,7 +76,7 @@ pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, JointStatus> {
 pub unsafe fn open<'a, K: Kind>(storage: *mut K::Storage) -> Result<&'a mut Object<K>, JointStatus> {
     usable(storage)?;
     // SAFETY: aligned and not NULL; the rest is the caller's promise.
-    unsafe { marked::<K>(storage) }.ok_or(JointStatus::NotStarted)
+    unsafe { started_object::<K>(storage) }.ok_or(JointStatus::NotStarted)
 }
 
 /// Object in a storage whose pointer is known to be aligned and not NULL.
@@ -84,7 +84,7 @@ pub unsafe fn open<'a, K: Kind>(storage: *mut K::Storage) -> Result<&'a mut Obje
 /// # Safety
 /// The pointer is aligned and not NULL, and points to a storage of this type that nobody else uses meanwhile.
 #[inline(always)]
-pub unsafe fn marked<'a, K: Kind>(storage: *mut K::Storage) -> Option<&'a mut Object<K>> {
+pub unsafe fn started_object<'a, K: Kind>(storage: *mut K::Storage) -> Option<&'a mut Object<K>> {
     let object = storage.cast::<Object<K>>();
     // SAFETY: aligned, not NULL, and large enough by its type; every bit pattern is a valid mark.
     if unsafe { (*object).mark } ^ storage.addr() != K::MARK as usize {
@@ -99,7 +99,7 @@ pub unsafe fn marked<'a, K: Kind>(storage: *mut K::Storage) -> Option<&'a mut Ob
 /// # Safety
 /// As for [`open`], but others may read.
 #[inline(always)]
-pub unsafe fn look<'a, K: Kind>(storage: *const K::Storage) -> Result<&'a Object<K>, JointStatus> {
+pub unsafe fn open_shared<'a, K: Kind>(storage: *const K::Storage) -> Result<&'a Object<K>, JointStatus> {
     // SAFETY: the caller's promise of this function; the object is only read.
     unsafe { open::<K>(storage.cast_mut()) }.map(|object| &*object)
 }

@@ -9,7 +9,7 @@ use table_blob::Blob;
 
 use crate::estimates::{JointEstimates, JointSamples};
 use crate::fp_mode;
-use crate::object::{Kind, Storage, look, open, read, start, usable};
+use crate::object::{Kind, Storage, open, open_shared, read, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of an observer.
@@ -150,15 +150,15 @@ pub unsafe extern "C" fn joint_observer_estimates(
     observer: *const JointObserver,
     estimates: *mut JointEstimates,
 ) -> JointStatus {
-    let give = || {
+    let copy_estimates = || {
         // SAFETY: the caller's promise, as required by the header.
-        let object = unsafe { look::<AnyObserver>(observer) }?;
+        let object = unsafe { open_shared::<AnyObserver>(observer) }?;
         usable(estimates)?;
         // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { estimates.write(JointEstimates::new(object.value.estimates())) };
         Ok(())
     };
-    JointStatus::from(give())
+    JointStatus::from(copy_estimates())
 }
 
 /// Saves the estimated parameters, outside of the control period. `bytes` is JOINT_MEMORY_BYTES.
@@ -171,7 +171,7 @@ pub unsafe extern "C" fn joint_observer_save(
 ) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
-        let object = unsafe { look::<AnyObserver>(observer) }?;
+        let object = unsafe { open_shared::<AnyObserver>(observer) }?;
         usable(memory)?;
         if bytes != JOINT_MEMORY_BYTES {
             return Err(JointStatus::WrongSize);

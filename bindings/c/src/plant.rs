@@ -8,7 +8,7 @@ use table_blob::Blob;
 
 use crate::estimates::{JointContact, JointSamples};
 use crate::fp_mode;
-use crate::object::{Kind, Storage, look, open, start, usable};
+use crate::object::{Kind, Storage, open, open_shared, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of a plant.
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn joint_plant_step(
 pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: *mut JointSamples) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
-        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        let object = unsafe { open_shared::<Plant<'static>>(plant) }?;
         usable(samples)?;
         let found = object.value.samples();
         // SAFETY: aligned, not NULL, and valid for writes.
@@ -143,7 +143,7 @@ pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: 
 pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *mut JointPlantOutputs) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
-        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        let object = unsafe { open_shared::<Plant<'static>>(plant) }?;
         usable(motion)?;
         let found = outputs(&object.value.motion());
         // SAFETY: aligned, not NULL, and valid for writes.
@@ -159,7 +159,7 @@ pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *
 pub unsafe extern "C" fn joint_plant_digest(plant: *const JointPlant, digest: *mut u64) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
-        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        let object = unsafe { open_shared::<Plant<'static>>(plant) }?;
         usable(digest)?;
         let found = object.value.digest();
         // SAFETY: aligned, not NULL, and valid for writes.

@@ -9,7 +9,7 @@ use table_blob::Blob;
 
 use crate::estimates::JointEstimate;
 use crate::fp_mode;
-use crate::object::{Kind, Storage, look, open, start, usable};
+use crate::object::{Kind, Storage, open, open_shared, start, usable};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn joint_probe_step(
         // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<Waiting>(probe) }?;
         // SAFETY: as above; different marks show that the objects are distinct.
-        let seen = unsafe { look::<AnyObserver>(observer) }?;
+        let seen = unsafe { open_shared::<AnyObserver>(observer) }?;
         if !object.has_tables_of(seen) {
             return Err(JointStatus::OtherTables);
         }
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn joint_probe_step(
             ProbeProgress::Running => (JointProgress::Running, none),
             ProbeProgress::Done(width) => (JointProgress::Done, width.into()),
             ProbeProgress::Refused(refusal) => {
-                let why = match refusal {
+                let reason = match refusal {
                     ProbeRefusal::NotAtRest => JointProgress::NotAtRest,
                     ProbeRefusal::Loaded => JointProgress::Loaded,
                     ProbeRefusal::NotHeld => JointProgress::NotHeld,
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn joint_probe_step(
                     ProbeRefusal::Unsteady => JointProgress::Unsteady,
                     ProbeRefusal::BadSamples => JointProgress::BadSamples,
                 };
-                (why, none)
+                (reason, none)
             }
         };
         // SAFETY: aligned, not NULL, and valid for writes.

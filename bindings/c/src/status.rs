@@ -80,42 +80,42 @@ impl From<Result<(), JointStatus>> for JointStatus {
 }
 
 /// Names and texts by number.
-const SAID: [[&core::ffi::CStr; 2]; 19] = [
+const TEXTS: [[&core::ffi::CStr; 2]; 19] = [
     [c"JOINT_STATUS_OK", c"done"],
     [c"JOINT_STATUS_NULL_POINTER", c"a pointer is NULL: give the object that the header asks for"],
     [c"JOINT_STATUS_MISALIGNED", c"a pointer is not aligned for its type: use the header's types, not bytes"],
-    [c"JOINT_STATUS_WRONG_SIZE", c"a size is not the one that is stated: pass sizeof the header's type, and build header and library from one archive"],
+    [c"JOINT_STATUS_WRONG_SIZE", c"a size differs from the one in the header: pass sizeof the header's type, and build header and library from one archive"],
     [c"JOINT_STATUS_NOT_STARTED", c"the object was not started, was moved, or is of another kind: start it where it stays"],
-    [c"JOINT_STATUS_NOT_FINITE", c"a number is infinite or not a number: look at where it comes from"],
-    [c"JOINT_STATUS_NOT_TABLES", c"these are no tables: link the file that `joint tables` wrote"],
-    [c"JOINT_STATUS_WRONG_TABLES_VERSION", c"the tables are of another version than the library: write them anew with its own `joint tables`"],
+    [c"JOINT_STATUS_NOT_FINITE", c"a number is infinite or not a number: check its source"],
+    [c"JOINT_STATUS_NOT_TABLES", c"the data are no tables: link the file that `joint tables` wrote"],
+    [c"JOINT_STATUS_WRONG_TABLES_VERSION", c"the tables have another version than the library: write them again with its `joint tables`"],
     [c"JOINT_STATUS_DAMAGED_TABLES", c"the tables are damaged: flash them again"],
-    [c"JOINT_STATUS_MISSING_TABLES", c"these tables were made without this part: write them anew with it"],
+    [c"JOINT_STATUS_MISSING_TABLES", c"the tables were made without this part: write them again with it"],
     [c"JOINT_STATUS_OTHER_TABLES", c"two objects were started from different tables: start both from the same"],
     [c"JOINT_STATUS_NOT_A_MEMORY", c"this is no memory of an observer: save one first"],
     [c"JOINT_STATUS_WRONG_MEMORY_VERSION", c"the memory is of another version of the observer: let it learn again and save anew"],
     [c"JOINT_STATUS_DAMAGED_MEMORY", c"the memory is damaged: load a copy, or let the observer learn again"],
     [c"JOINT_STATUS_OTHER_JOINT", c"the memory belongs to another joint, to other encoders, or to an observer with or without maps"],
     [c"JOINT_STATUS_MEMORY_OUT_OF_RANGE", c"the memory holds a number that no joint of this design can have: let the observer learn again"],
-    [c"JOINT_STATUS_FRACTION_OUT_OF_RANGE", c"a fraction of a turn is more than a turn: give turns, neither counts nor degrees nor radians, and whole ones in `turns`"],
+    [c"JOINT_STATUS_FRACTION_OUT_OF_RANGE", c"a fraction of a turn exceeds one turn: give turns, not counts, degrees or radians, and whole turns in `turns`"],
     [c"JOINT_STATUS_OTHER_HEADER", c"the caller was compiled with a header of another version: take header and library from one archive"],
-    [c"JOINT_STATUS_ALREADY_STEPPED", c"the observer has been stepped: start it anew, and load before the first step"],
+    [c"JOINT_STATUS_ALREADY_STEPPED", c"the observer was already stepped: start it again, and load before the first step"],
 ];
 
-fn said(status: u32, which: usize) -> *const c_char {
+fn status_text(status: u32, which: usize) -> *const c_char {
     let unknown = [c"JOINT_STATUS_UNKNOWN", c"this is no status of this library"];
-    let [name, text] = SAID.get(status as usize).copied().unwrap_or(unknown);
+    let [name, text] = TEXTS.get(status as usize).copied().unwrap_or(unknown);
     if which == 0 { name.as_ptr() } else { text.as_ptr() }
 }
 
 /// The name of a status, such as "JOINT_STATUS_OK"; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_status_name(status: u32) -> *const c_char {
-    said(status, 0)
+    status_text(status, 0)
 }
 
 /// What a status means and what to do about it, in one sentence; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_status_text(status: u32) -> *const c_char {
-    said(status, 1)
+    status_text(status, 1)
 }

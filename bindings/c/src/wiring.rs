@@ -11,7 +11,7 @@ use table_blob::Blob;
 
 use crate::estimates::JointSamples;
 use crate::fp_mode;
-use crate::object::{Kind, Storage, look, open, read, start, usable};
+use crate::object::{Kind, Storage, open, open_shared, read, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of a wiring check.
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn joint_wiring_verdicts(
 ) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
-        let object = unsafe { look::<Check>(wiring) }?;
+        let object = unsafe { open_shared::<Check>(wiring) }?;
         usable(verdicts)?;
         let found = JointWiringVerdicts::from(&object.value.0.wiring());
         // SAFETY: aligned, not NULL, and valid for writes.
@@ -244,7 +244,7 @@ const TEXTS: [[&CStr; 2]; JOINT_WIRING_ITEMS] = [
     ],
 ];
 
-fn text(item: u32, which: usize) -> *const c_char {
+fn item_text(item: u32, which: usize) -> *const c_char {
     let unknown = [c"unknown", c"this is no item of the wiring"];
     let [name, help] = TEXTS.get(item as usize).copied().unwrap_or(unknown);
     if which == 0 { name.as_ptr() } else { help.as_ptr() }
@@ -253,13 +253,13 @@ fn text(item: u32, which: usize) -> *const c_char {
 /// Name of an item of the wiring, such as "output_direction"; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_wiring_item_name(item: u32) -> *const c_char {
-    text(item, 0)
+    item_text(item, 0)
 }
 
 /// Error and remedy for an item of the wiring, in one sentence; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_wiring_item_text(item: u32) -> *const c_char {
-    text(item, 1)
+    item_text(item, 1)
 }
 
 #[cfg(test)]
@@ -269,7 +269,7 @@ mod tests {
     use super::TEXTS;
 
     #[test]
-    fn texts_of_items_are_those_of_the_core() {
+    fn wiring_texts_match_core() {
         for (item, [name, help]) in WiringItem::ALL.into_iter().zip(TEXTS) {
             assert_eq!([name.to_str(), help.to_str()], [Ok(item.name()), Ok(item.help())]);
         }

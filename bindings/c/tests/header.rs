@@ -71,7 +71,7 @@ const MUST_USE: &str = "#if defined(__cplusplus) && __cplusplus >= 201703L
 #endif";
 
 /// Structs of the header, in the order of the library's sum.
-const CROSSING: [&str; 18] = [
+const STRUCTS: [&str; 18] = [
     "TablesFacts",
     "Reading",
     "Samples",
@@ -94,7 +94,7 @@ const CROSSING: [&str; 18] = [
 
 /// Definition of the sum over the version and the sizes of all structs, evaluated by the caller's compiler.
 fn abi() -> String {
-    let folded = CROSSING
+    let folded = STRUCTS
         .iter()
         .fold("(uint32_t)JOINT_ABI_VERSION".to_owned(), |sum, name| format!("JOINT_FOLD( \\\n  {sum}, Joint{name})"));
     format!(
@@ -184,7 +184,7 @@ fn header() -> String {
 }
 
 #[test]
-fn the_header_is_what_the_sources_say() {
+fn header_matches_sources() {
     let (path, found) = (package().join("include/lostmotion/joint.h"), header());
     if std::env::var_os(WRITE).is_some() {
         fs::write(&path, &found).expect("a header that can be written");
@@ -192,12 +192,12 @@ fn the_header_is_what_the_sources_say() {
     let committed = fs::read_to_string(&path).unwrap_or_default();
     assert!(
         committed == found,
-        "bindings/c/include/lostmotion/joint.h is not what the sources say: {WRITE}=1 cargo test -p c-bindings --test header"
+        "bindings/c/include/lostmotion/joint.h differs from the sources: run {WRITE}=1 cargo test -p c-bindings --test header"
     );
 }
 
 #[test]
-fn the_header_is_clean_in_every_c_and_c_plus_plus() {
+fn header_compiles_without_warnings() {
     let folder = tempfile::tempdir().expect("a folder");
     let source = folder.path().join("only_the_header.c");
     // Included twice to test the guard.
@@ -214,8 +214,8 @@ fn the_header_is_clean_in_every_c_and_c_plus_plus() {
         }
     }
     // The first compiler of each language comes with every toolchain that links Rust; `joint hil --check` asks for all.
-    println!("{compiled} of 12 compilers and standards are here, and clean");
-    assert!(compiled >= 3, "no C compiler is here");
+    println!("{compiled} of 12 compilers and standards found, all without warnings");
+    assert!(compiled >= 3, "no C compiler found");
 }
 
 /// Returns whether the compiler exists; fails if it reports anything.
@@ -224,8 +224,8 @@ fn is_clean(compiler: &str, language: &str, standard: &str, source: &Path) -> bo
     command.args(FLAGS).arg(format!("-std={standard}")).args(["-x", language, "-I"]).arg(package().join("include"));
     match command.arg(source).output() {
         Ok(output) => {
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{compiler} -std={standard}:\n{said}");
+            let output_text = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{compiler} -std={standard}:\n{output_text}");
             true
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => false,

@@ -47,7 +47,7 @@ pub struct Motion {
 }
 
 /// Evaluates an expression for a joint of any number of planets.
-macro_rules! each {
+macro_rules! for_each_joint {
     ($plant:expr, $joint:ident => $work:expr) => {
         match $plant {
             Joint::One($joint) => $work,
@@ -64,17 +64,17 @@ impl<'t> Plant<'t> {
     pub fn new_in(place: &mut MaybeUninit<Self>, blob: &Blob<'t>) -> Result<(), BlobError> {
         let (gears, around) = blob.plant()?;
         match gears {
-            Gears::One(gears) => Self::put(place, gears, around, Joint::One),
-            Gears::Three(gears) => Self::put(place, gears, around, Joint::Three),
-            Gears::Four(gears) => Self::put(place, gears, around, Joint::Four),
-            Gears::Five(gears) => Self::put(place, gears, around, Joint::Five),
+            Gears::One(gears) => Self::write_joint(place, gears, around, Joint::One),
+            Gears::Three(gears) => Self::write_joint(place, gears, around, Joint::Three),
+            Gears::Four(gears) => Self::write_joint(place, gears, around, Joint::Four),
+            Gears::Five(gears) => Self::write_joint(place, gears, around, Joint::Five),
         }
         Ok(())
     }
 
     /// Separate function for each number of planets: inlined, their joints would lie side by side on the stack.
     #[inline(never)]
-    fn put<const N: usize>(
+    fn write_joint<const N: usize>(
         place: &mut MaybeUninit<Self>,
         gears: &'t Tables<f32, N>,
         around: &'t SurroundingsTable<f32>,
@@ -86,25 +86,25 @@ impl<'t> Plant<'t> {
     /// Advances by one control period under a torque command and a torque that brakes the link [N m].
     #[inline(never)]
     pub fn advance(&mut self, command: f32, disturbance: f32) {
-        each!(&mut self.0, joint => joint.advance(command, disturbance));
+        for_each_joint!(&mut self.0, joint => joint.advance(command, disturbance));
     }
 
     /// Present measurements.
     #[inline(never)]
     pub fn samples(&self) -> Samples<f32> {
-        each!(&self.0, joint => joint.samples())
+        for_each_joint!(&self.0, joint => joint.samples())
     }
 
     /// Digest of every bit of the gears' state.
     #[inline(never)]
     pub fn digest(&self) -> u64 {
-        each!(&self.0, joint => joint.model().state_digest())
+        for_each_joint!(&self.0, joint => joint.model().state_digest())
     }
 
     /// Present motion.
     #[inline(never)]
     pub fn motion(&self) -> Motion {
-        each!(&self.0, joint => motion(joint))
+        for_each_joint!(&self.0, joint => motion(joint))
     }
 }
 

@@ -76,9 +76,9 @@ pub fn design(wanted: &Wanted<'_>) -> Result<Vec<u64>, DesignError> {
         planets,
         parts: blob.parts,
     };
-    header.put(&mut blob.bytes);
+    header.write_to(&mut blob.bytes);
     let digest = digest_of(&words(&blob.bytes));
-    Header { digest, ..header }.put(&mut blob.bytes);
+    Header { digest, ..header }.write_to(&mut blob.bytes);
     Ok(words(&blob.bytes))
 }
 
@@ -112,7 +112,7 @@ impl Writer {
     fn add<T: Fixed>(&mut self, kind: usize, value: &T) {
         let (offset, bytes) = (self.bytes.len(), size_of::<T>().next_multiple_of(WORD));
         self.bytes.resize(offset + bytes, 0);
-        value.put(&mut self.bytes[offset..]);
+        value.write_to(&mut self.bytes[offset..]);
         self.parts[kind] = Part { offset: offset as u32, bytes: bytes as u32 };
     }
 }
@@ -143,7 +143,7 @@ mod tests {
     const OF_VERSION_5: u64 = 0xaa2a_37f1_ccf6_2b6d;
 
     #[test]
-    fn another_layout_has_another_version() {
+    fn layout_change_needs_new_version() {
         let layout = super::layout();
         let found = layout
             .iter()
@@ -153,7 +153,7 @@ mod tests {
         assert_eq!(
             found,
             OF_VERSION_5,
-            "a table has another layout ({found:#x}): raise VERSION, and put this digest here with it:\n{}",
+            "the layout of a table changed (digest {found:#x}): raise VERSION and update this digest:\n{}",
             layout.join("\n")
         );
     }

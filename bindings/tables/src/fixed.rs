@@ -6,11 +6,11 @@ use model_core::gears::tables::{Block, DampingLaw, Scheme};
 pub trait Fixed {
     /// Writes the value's bytes; padding is left unchanged.
     #[cfg(feature = "design")]
-    fn put(&self, place: &mut [u8]);
+    fn write_to(&self, place: &mut [u8]);
 
     /// Returns whether bytes are a valid value. All bytes are valid numbers, but not all are valid booleans or
     /// variants.
-    fn is_one(bytes: &[u8]) -> bool;
+    fn is_valid(bytes: &[u8]) -> bool;
 
     /// Appends a description of the layout: names, offsets, types.
     #[cfg(test)]
@@ -22,7 +22,7 @@ pub fn cast<T: Fixed>(words: &[u64]) -> Option<&T> {
     const { assert!(align_of::<T>() <= align_of::<u64>()) };
     // SAFETY: the same memory and lifetime, seen as bytes, all of which are initialised.
     let bytes = unsafe { core::slice::from_raw_parts(words.as_ptr().cast::<u8>(), size_of_val(words)) };
-    if bytes.len() != size_of::<T>().next_multiple_of(size_of::<u64>()) || !T::is_one(bytes) {
+    if bytes.len() != size_of::<T>().next_multiple_of(size_of::<u64>()) || !T::is_valid(bytes) {
         return None;
     }
     // SAFETY: the size of the value, aligned for it, and every field was checked.
@@ -33,11 +33,11 @@ macro_rules! numbers {
     ($($number:ty),*) => {$(
         impl Fixed for $number {
             #[cfg(feature = "design")]
-            fn put(&self, place: &mut [u8]) {
+            fn write_to(&self, place: &mut [u8]) {
                 place[..size_of::<Self>()].copy_from_slice(&self.to_le_bytes());
             }
 
-            fn is_one(_: &[u8]) -> bool {
+            fn is_valid(_: &[u8]) -> bool {
                 true
             }
 
@@ -53,11 +53,11 @@ numbers!(u8, u16, u32, u64, i32, i64, f32);
 
 impl Fixed for bool {
     #[cfg(feature = "design")]
-    fn put(&self, place: &mut [u8]) {
+    fn write_to(&self, place: &mut [u8]) {
         place[0] = u8::from(*self);
     }
 
-    fn is_one(bytes: &[u8]) -> bool {
+    fn is_valid(bytes: &[u8]) -> bool {
         matches!(bytes, [0 | 1, ..])
     }
 
@@ -71,11 +71,11 @@ macro_rules! variants {
     ($kind:ty, $all:pat) => {
         impl Fixed for $kind {
             #[cfg(feature = "design")]
-            fn put(&self, place: &mut [u8]) {
-                (*self as u32).put(place);
+            fn write_to(&self, place: &mut [u8]) {
+                (*self as u32).write_to(place);
             }
 
-            fn is_one(bytes: &[u8]) -> bool {
+            fn is_valid(bytes: &[u8]) -> bool {
                 matches!(bytes, [$all, 0, 0, 0, ..])
             }
 
@@ -93,14 +93,14 @@ variants!(DampingLaw, 0 | 1);
 
 impl<T: Fixed, const N: usize> Fixed for [T; N] {
     #[cfg(feature = "design")]
-    fn put(&self, place: &mut [u8]) {
+    fn write_to(&self, place: &mut [u8]) {
         for (index, value) in self.iter().enumerate() {
-            value.put(&mut place[index * size_of::<T>()..]);
+            value.write_to(&mut place[index * size_of::<T>()..]);
         }
     }
 
-    fn is_one(bytes: &[u8]) -> bool {
-        (0..N).all(|index| bytes.get(index * size_of::<T>()..).is_some_and(T::is_one))
+    fn is_valid(bytes: &[u8]) -> bool {
+        (0..N).all(|index| bytes.get(index * size_of::<T>()..).is_some_and(T::is_valid))
     }
 
     #[cfg(test)]
@@ -112,11 +112,11 @@ impl<T: Fixed, const N: usize> Fixed for [T; N] {
 // Columns in order, as nalgebra stores them.
 impl<const R: usize, const C: usize> Fixed for Block<f32, R, C> {
     #[cfg(feature = "design")]
-    fn put(&self, place: &mut [u8]) {
-        self.0.data.0.put(place);
+    fn write_to(&self, place: &mut [u8]) {
+        self.0.data.0.write_to(place);
     }
 
-    fn is_one(_: &[u8]) -> bool {
+    fn is_valid(_: &[u8]) -> bool {
         true
     }
 

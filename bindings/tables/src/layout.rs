@@ -5,8 +5,8 @@ use model_core::{compensation, gears, observer, virtual_joint, wiring};
 use crate::fixed::Fixed;
 
 /// Checks a field whose type is inferred from an accessor.
-pub fn is_one<S, F: Fixed>(bytes: &[u8], offset: usize, _: impl Fn(&S) -> &F) -> bool {
-    bytes.get(offset..).is_some_and(F::is_one)
+pub fn is_valid<S, F: Fixed>(bytes: &[u8], offset: usize, _: impl Fn(&S) -> &F) -> bool {
+    bytes.get(offset..).is_some_and(F::is_valid)
 }
 
 /// Describes a field whose type is inferred from an accessor.
@@ -20,13 +20,13 @@ macro_rules! structs {
     ($($kind:ty { $($field:ident),* })*) => {$(
         impl $crate::fixed::Fixed for $kind {
             #[cfg(feature = "design")]
-            fn put(&self, place: &mut [u8]) {
+            fn write_to(&self, place: &mut [u8]) {
                 let Self { $($field),* } = self;
-                $($field.put(&mut place[core::mem::offset_of!(Self, $field)..]);)*
+                $($field.write_to(&mut place[core::mem::offset_of!(Self, $field)..]);)*
             }
 
-            fn is_one(bytes: &[u8]) -> bool {
-                true $(&& $crate::layout::is_one(bytes, core::mem::offset_of!(Self, $field), |it: &Self| &it.$field))*
+            fn is_valid(bytes: &[u8]) -> bool {
+                true $(&& $crate::layout::is_valid(bytes, core::mem::offset_of!(Self, $field), |it: &Self| &it.$field))*
             }
 
             #[cfg(test)]

@@ -26,14 +26,14 @@ fn blob(name: &str) -> Vec<u64> {
 }
 
 /// Replaces the digest by the right one, as somebody would who changes tables on purpose.
-fn sealed(mut words: Vec<u64>) -> Vec<u64> {
+fn with_right_digest(mut words: Vec<u64>) -> Vec<u64> {
     let others = words.iter().enumerate().filter(|(index, _)| *index != DIGEST_AT);
     words[DIGEST_AT] = others.fold(digest::START, |running, (_, word)| digest::chain(running, *word));
     words
 }
 
 #[test]
-fn every_joint_s_tables_are_read_in_place_as_they_were_designed() {
+fn tables_read_in_place_as_designed() {
     for name in ["q1", "s1", "d2", "l1"] {
         let (words, joint) = (blob(name), joint(name));
         let blob = Blob::open(&words).unwrap();
@@ -57,12 +57,12 @@ fn every_joint_s_tables_are_read_in_place_as_they_were_designed() {
 }
 
 #[test]
-fn an_equivalent_gear_has_tables_too() {
+fn equivalent_gear_has_plant_tables() {
     assert!(matches!(Blob::open(&blob("c1")).unwrap().plant().unwrap().0, Gears::One(_)));
 }
 
 #[test]
-fn a_change_of_any_word_is_refused() {
+fn changed_word_rejected() {
     let words = blob("q1");
     for index in 0..words.len() {
         let mut changed = words.clone();
@@ -72,7 +72,7 @@ fn a_change_of_any_word_is_refused() {
 }
 
 #[test]
-fn tables_of_another_kind_version_or_size_are_refused_by_name() {
+fn foreign_tables_rejected_with_reason() {
     let words = blob("q1");
     let refused = |words: &[u64]| Blob::open(words).err();
     assert_eq!(refused(&[]), Some(BlobError::NotTables));
@@ -81,14 +81,14 @@ fn tables_of_another_kind_version_or_size_are_refused_by_name() {
     let mut newer = words.clone();
     newer[VERSION_AT] += 1;
     assert_eq!(newer[VERSION_AT] as u32, VERSION + 1);
-    assert_eq!(refused(&sealed(newer)), Some(BlobError::WrongVersion));
+    assert_eq!(refused(&with_right_digest(newer)), Some(BlobError::WrongVersion));
     let mut damaged = words.clone();
     *damaged.last_mut().unwrap() ^= 1;
     assert_eq!(refused(&damaged), Some(BlobError::Damaged));
 }
 
 #[test]
-fn bytes_that_are_no_value_of_their_type_are_refused_whatever_the_digest_says() {
+fn invalid_values_rejected_despite_digest() {
     let words = blob("q1");
     let observer = std::ptr::from_ref(Blob::open(&words).unwrap().observer().unwrap()) as usize;
     let begin = words.as_ptr() as usize;
@@ -96,7 +96,7 @@ fn bytes_that_are_no_value_of_their_type_are_refused_whatever_the_digest_says() 
     let at = observer - begin + std::mem::offset_of!(model_core::observer::ObserverTables<f32>, counts.has_output);
     let mut wrong = words.clone();
     wrong[at / 8] = wrong[at / 8] & !(0xff << (8 * (at % 8))) | 7 << (8 * (at % 8));
-    let wrong = sealed(wrong);
+    let wrong = with_right_digest(wrong);
     assert_eq!(Blob::open(&wrong).unwrap().observer().err(), Some(BlobError::Damaged));
     assert!(Blob::open(&wrong).unwrap().compensation().is_ok());
 }

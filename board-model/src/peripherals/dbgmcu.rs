@@ -92,8 +92,9 @@ mod tests {
     use crate::peripherals::flash::BASE;
     use crate::wires::{Cable, Reset, SECOND, Surroundings};
 
+    /// If it is configured to.
     #[test]
-    fn the_watchdog_stands_still_with_a_held_core_where_it_is_told_to() {
+    fn watchdog_stops_with_halted_core() {
         let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         for (mut machine, watchdog, freeze) in [
             (machine(chips::f405::chip(BASE + 0x1000)), 0x4000_3000, (0xe004_2008, 1 << 12)),

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_go_round_and_round_in_memory_and_a_pause_is_told_once() {
+    fn circular_transfer_reports_pause_once() {
         for mut case in cases() {
             let mut memory = BTreeMap::new();
             started(&mut case, &mut memory);
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_come_while_the_core_stands_still_are_moved() {
+    fn bytes_moved_while_core_stopped() {
         for mut case in cases() {
             let mut memory = BTreeMap::new();
             started(&mut case, &mut memory);

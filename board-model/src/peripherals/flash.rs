@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_clears_bits_and_an_erase_sets_them() {
+    fn program_clears_and_erase_sets_bits() {
         let mut array = Array::new(BASE + 0x1000, 0x4000, 8, true);
         array.program(BASE + 0x2000, 4, 0x1234_5678);
         array.program(BASE + 0x2000, 4, 0xffff_0000);
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn option_bytes_are_not_touched() {
+    fn option_bytes_untouched() {
         let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         for (mut machine, writes) in [
             // Keys of the options, the options, and on the STM32G474 their reload.
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_was_cut_is_neither_old_nor_new() {
+    fn cut_word_neither_old_nor_new() {
         let mut array = Array::new(BASE, 0x4000, 8, true);
         array.leave_programmed(BASE, 8, 0, HowFar::Before);
         assert!(array.is_erased(BASE) && !array.is_damaged(BASE));
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn an_erase_that_was_cut_leaves_words_of_all_kinds() {
+    fn cut_erase_leaves_mixed_words() {
         for (how_far, expected) in [
             (HowFar::Before, [true, false, false]),
             (HowFar::Early, [true, false, true]),
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn one_wrong_key_shuts_the_lock() {
+    fn wrong_key_closes_lock() {
         let mut wires = wires();
         let mut lock = Lock::default();
         KEYS.into_iter().for_each(|key| lock.key(key, "KEYR", &mut wires));

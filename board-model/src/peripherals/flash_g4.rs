@@ -299,8 +299,9 @@ mod tests {
     const FLASH: u32 = 0x4002_2000;
     const PLACE: u32 = BASE + 0x7_f010;
 
+    /// There is no second bank then.
     #[test]
-    fn one_bank_has_pages_of_twice_the_size_and_no_second_bank() {
+    fn single_bank_doubles_page_size() {
         let chip = chips::g474::chip(BASE + 0x1000);
         let mut machine = Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         machine.wires.single_bank = true;
@@ -324,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chip_with_one_bank_has_64_pages_of_2_kib() {
+    fn one_bank_chip_has_64_pages() {
         let mut machine =
             Machine::new(chips::g431::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
         machine.settle();
@@ -348,8 +349,9 @@ mod tests {
         assert_eq!(said, ["reserved bits 0x00000800 are written", "there is no page 64"]);
     }
 
+    /// Until its flag is cleared.
     #[test]
-    fn a_double_word_that_was_cut_raises_nmi_again_and_again_until_its_flag_is_cleared() {
+    fn cut_double_word_repeats_nmi() {
         let chip = chips::g474::chip(BASE + 0x1000);
         let mut machine = Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         machine.settle();

@@ -272,8 +272,9 @@ mod tests {
     const FLASH: u32 = 0x5200_2000 + SECOND;
     const PLACE: u32 = BASE + BANK + 0x40;
 
+    /// A read with FAULTMASK survives it.
     #[test]
-    fn a_word_that_was_cut_is_a_bus_fault_which_a_look_with_faultmask_survives() {
+    fn cut_word_is_bus_fault() {
         let mut machine =
             Machine::new(chips::h743::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
         machine.settle();

@@ -152,7 +152,7 @@ mod tests {
     use crate::wires::{Cable, Pin, Reset, Surroundings};
 
     #[test]
-    fn a_pin_that_was_set_up_is_told_for_good() {
+    fn pin_setup_recorded() {
         let mut machine =
             Machine::new(chips::f405::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
         machine.settle();

@@ -34,7 +34,7 @@ mod tests {
     use crate::wires::{Cable, Surroundings};
 
     #[test]
-    fn a_supply_below_the_level_is_told_while_the_detector_is_on() {
+    fn low_supply_reported_while_detector_on() {
         let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         for (mut machine, gate, enable, output) in [
             (

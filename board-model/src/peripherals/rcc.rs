@@ -269,13 +269,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dividers_are_those_of_the_manual() {
+    fn dividers_match_manual() {
         assert_eq!([0, 8, 11, 12, 15].map(bus_divider), [1, 2, 16, 64, 512]);
         assert_eq!([0, 4, 5, 7].map(peripheral_divider), [1, 2, 4, 16]);
     }
 
     #[test]
-    fn a_source_that_was_switched_on_is_ready_after_its_time() {
+    fn clock_source_ready_after_its_time() {
         let mut source = Source::default();
         source.switch(true, Some(5), 10);
         source.switch(true, Some(5), 14);

@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_takes_its_time_and_comes_in_while_another_goes_out() {
+    fn full_duplex_byte_takes_its_time() {
         for (mut machine, base) in [(f405(), SPI1), (g474(), SPI2)] {
             machine.write(base + 4, 4, if base == SPI2 { 0x1700 } else { 0 });
             machine.write(base, 4, MASTER.into());
@@ -433,8 +433,9 @@ mod tests {
         }
     }
 
+    /// Until data and status are read.
     #[test]
-    fn what_is_not_fetched_is_lost_and_that_is_told_until_data_and_status_are_read() {
+    fn overrun_reported_until_read() {
         let mut machine = f405();
         machine.write(SPI1, 4, MASTER.into());
         for _ in 0..2 {
@@ -456,8 +457,9 @@ mod tests {
         }
     }
 
+    /// Until status is read and control is written.
     #[test]
-    fn a_master_whose_select_is_low_is_one_no_more_until_status_and_control_are_seen_to() {
+    fn low_select_ends_master_mode() {
         let mut machine = f405();
         machine.write(SPI1, 4, (MASTER & !(1 << 8)).into());
         assert_eq!(machine.read(SPI1, 4) as u32 & (MSTR | SPE), 0);
@@ -474,8 +476,9 @@ mod tests {
         assert_eq!(machine.read(SPI1 + 8, 4) & MODE_FAULT, MODE_FAULT);
     }
 
+    /// Frames of 16 bits go high byte first; one access writes two frames of 8 bits.
     #[test]
-    fn frames_of_16_bits_go_the_high_byte_first_and_two_of_8_bits_by_one_access() {
+    fn frame_widths_and_byte_order() {
         let mut machine = f405();
         machine.wires.encoder = Some(As5047p::new(1, Pin('A', 4)));
         if let Some(encoder) = &mut machine.wires.encoder {
@@ -507,8 +510,9 @@ mod tests {
         assert_eq!((machine.read(SPI2 + 12, 2), machine.read(SPI2 + 8, 4) & (BUSY | 1)), (0xffff, 0));
     }
 
+    /// And is switched off only while no transfer runs.
     #[test]
-    fn it_is_set_up_while_it_is_off_and_switched_off_while_nothing_is_under_way() {
+    fn spi_configured_while_off() {
         let mut machine = f405();
         machine.write(SPI1, 4, MASTER.into());
         machine.write(SPI1, 4, (MASTER | 7 << 3).into());

@@ -269,7 +269,7 @@ mod tests {
         [(super::ARR, 0xffff), (super::CCMR1, 0b1101), (super::CCER, 1), (super::EGR, 1), (super::CR1, 1)];
 
     #[test]
-    fn the_external_oscillator_is_measured_in_counts_of_the_internal_one() {
+    fn external_oscillator_measured_by_internal_one() {
         for rate in [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000] {
             let machine = |chip, source| Machine::new(chip, source, Cable::default(), 1000);
             let f405 = machine(chips::f405::chip(BASE + 0x1000), Surroundings::crystal(rate));

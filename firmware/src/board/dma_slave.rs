@@ -7,7 +7,7 @@
 use super::description::SPI_SLAVE;
 use super::gpio::Pin;
 use super::pac;
-use super::start::given;
+use super::start::clocked_pin;
 use crate::port::spi::Frame;
 use crate::port::spi_slave::{Broken, SlaveBus};
 
@@ -42,11 +42,11 @@ pub struct DmaSlave<U> {
 impl<U: Unit> DmaSlave<U> {
     /// Starts the slave, not armed.
     pub fn start(device: pac::Peripherals, received: &'static mut Frame, sent: &'static mut Frame) -> Self {
-        let [select, clock, out, input] = PINS.map(|pin| given(&device.RCC, pin));
+        let [select, clock, out, input] = PINS.map(|pin| clocked_pin(&device.RCC, pin));
         // At the pin speed after reset, edges of the answer would take longer than a bit.
         out.0.make_fast();
         for (pin, function) in [select, clock, out, input] {
-            pin.give_to(function);
+            pin.set_function(function);
         }
         Self { unit: U::start(device, select.0), received, sent }
     }

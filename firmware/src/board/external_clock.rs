@@ -35,7 +35,7 @@ pub struct External {
 const EXTERNAL_TOLERANCE: u32 = 100;
 
 /// Source of the core clock by the measurement, before the PLL starts.
-pub fn judged(external: Option<External>, internal: &Internal) -> Clock {
+pub fn select_clock(external: Option<External>, internal: &Internal) -> Clock {
     let source = match external {
         None => ClockSource::Internal,
         Some(External { measured: None, .. }) => ClockSource::DidNotStart,

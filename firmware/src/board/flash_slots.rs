@@ -27,13 +27,13 @@ pub trait Flash {
     /// Returns `true` if the registers are locked.
     fn is_locked(&self) -> bool;
     /// Writes one of the keys that unlock the registers.
-    fn take_key(&mut self, key: u32);
+    fn write_key(&mut self, key: u32);
     /// Clears errors and prepares for the next erase or write.
     fn prepare(&mut self);
     /// Starts to erase a slot.
     fn erase(&mut self, slot: Slot);
     /// Enables or disables writes.
-    fn take_writes(&mut self, on: bool);
+    fn set_write_enable(&mut self, on: bool);
     /// Returns `true` while an operation is in progress.
     fn is_busy(&self) -> bool;
     /// Locks the registers and invalidates caches.
@@ -65,7 +65,7 @@ impl<F: Flash> FlashSlots<F> {
     fn open(&mut self, change: impl FnOnce(&mut Self)) {
         // Writing keys to unlocked registers would lock them until the next reset.
         if self.flash.is_locked() {
-            KEYS.into_iter().for_each(|key| self.flash.take_key(key));
+            KEYS.into_iter().for_each(|key| self.flash.write_key(key));
         }
         self.flash.prepare();
         change(self);
@@ -108,7 +108,7 @@ impl<F: Flash> Slots for FlashSlots<F> {
 
     fn write(&mut self, slot: Slot, record: &Record) {
         self.open(|slots| {
-            slots.flash.take_writes(true);
+            slots.flash.set_write_enable(true);
             // Writes must be enabled before the first word.
             dsb();
             isb();
@@ -125,7 +125,7 @@ impl<F: Flash> Slots for FlashSlots<F> {
                     }
                 }
             }
-            slots.flash.take_writes(false);
+            slots.flash.set_write_enable(false);
         });
     }
 

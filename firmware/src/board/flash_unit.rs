@@ -56,7 +56,7 @@ impl<K: Kind> Flash for FlashUnit<K> {
         self.registers.cr().read().bits() & LOCK != 0
     }
 
-    fn take_key(&mut self, key: u32) {
+    fn write_key(&mut self, key: u32) {
         // SAFETY: the key register takes every word.
         self.registers.keyr().write(|w| unsafe { w.bits(key) });
     }
@@ -75,7 +75,7 @@ impl<K: Kind> Flash for FlashUnit<K> {
         self.control(erase | AT_IT);
     }
 
-    fn take_writes(&mut self, on: bool) {
+    fn set_write_enable(&mut self, on: bool) {
         self.control(K::SIZE | if on { PROGRAM } else { 0 });
     }
 

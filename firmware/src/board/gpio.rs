@@ -38,7 +38,7 @@ impl Pin {
     }
 
     /// Assigns the pin to a peripheral function.
-    pub fn give_to(self, function: u8) {
+    pub fn set_function(self, function: u8) {
         let registers = self.registers();
         // SAFETY: of the register only this pin's field changes, and every value of that is allowed.
         unsafe {

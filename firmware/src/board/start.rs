@@ -52,11 +52,11 @@ impl Started {
     /// Opens the serial line to the host.
     pub fn open_serial(&self) -> <ThisChip as Chip>::Port {
         let [send, receive] =
-            [description::SERIAL_SEND, description::SERIAL_RECEIVE].map(|pin| given(&self.clocks, pin));
-        send.0.give_to(send.1);
+            [description::SERIAL_SEND, description::SERIAL_RECEIVE].map(|pin| clocked_pin(&self.clocks, pin));
+        send.0.set_function(send.1);
         // No host drives the line yet.
         receive.0.pull_up();
-        receive.0.give_to(receive.1);
+        receive.0.set_function(receive.1);
         let has_pll = self.clock.source != ClockSource::Failed;
         let clock = if has_pll { description::SERIAL_CLOCK } else { ThisChip::INTERNAL.rate };
         ThisChip::open_port(&self.clocks, clock, description::BAUD)
@@ -73,7 +73,7 @@ fn output(clocks: &pac::RCC, output: Option<(u8, u8, bool)>, on: bool) -> Output
 }
 
 /// Returns a pin and its function and enables the clock of its port.
-pub(super) fn given(clocks: &pac::RCC, (port, number, function): (u8, u8, u8)) -> (Pin, u8) {
+pub(super) fn clocked_pin(clocks: &pac::RCC, (port, number, function): (u8, u8, u8)) -> (Pin, u8) {
     ThisChip::power_port(clocks, port);
     (Pin::new(port, number), function)
 }

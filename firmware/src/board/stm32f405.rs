@@ -10,7 +10,7 @@ use link::messages::{Clock, ClockSource};
 use super::bounded_wait::wait_until;
 use super::chip::{Chip, Parts};
 use super::description::{EXTERNAL, EXTERNAL_PLL, INTERNAL_PLL, SLOTS};
-use super::external_clock::{CaptureTimer, External, Internal, judged, measure};
+use super::external_clock::{CaptureTimer, External, Internal, measure, select_clock};
 use super::flash_slots::FlashSlots;
 use super::flash_unit::{FlashUnit, Kind};
 use super::internal_clock::back_to_internal;
@@ -74,7 +74,7 @@ fn start_clock(clocks: &pac::RCC, flash: &pac::FLASH, timer: &CaptureTimer) -> C
         let started = wait_until(|| clocks.cr().read().hserdy().bit_is_set());
         External { frequency, is_signal, measured: started.then(|| measured(clocks, timer)) }
     });
-    let clock = judged(external, &Stm32F405::INTERNAL);
+    let clock = select_clock(external, &Stm32F405::INTERNAL);
     let is_external = clock.source.is_external();
     if !is_external {
         clocks.cr().modify(|_, w| w.hseon().clear_bit());

@@ -20,7 +20,7 @@ use link::messages::{Clock, ClockSource};
 use super::bounded_wait::wait_until;
 use super::chip::{Chip, Parts};
 use super::description::{CORE_RATE, EXTERNAL, EXTERNAL_PLL, FLASH_BYTES, INTERNAL_PLL, SLOTS};
-use super::external_clock::{CaptureTimer, External, Internal, judged, measure};
+use super::external_clock::{CaptureTimer, External, Internal, measure, select_clock};
 use super::fifo_uart::FifoUart;
 use super::flash_slots::{FlashSlots, mark};
 use super::flash_unit::{FlashUnit, Kind};
@@ -174,7 +174,7 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
         let started = wait_until(|| clocks.cr().read().hserdy().bit_is_set());
         External { frequency, is_signal, measured: started.then(|| measured(clocks, timer)) }
     });
-    let clock = judged(external, &Stm32G4::INTERNAL);
+    let clock = select_clock(external, &Stm32G4::INTERNAL);
     let is_external = clock.source.is_external();
     if !is_external {
         clocks.cr().modify(|_, w| w.hseon().clear_bit());

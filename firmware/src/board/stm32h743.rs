@@ -15,7 +15,7 @@ use link::messages::{Clock, ClockSource};
 use super::bounded_wait::wait_until;
 use super::chip::{Chip, Parts};
 use super::description::{EXTERNAL, EXTERNAL_PLL, INTERNAL_PLL, SLOTS};
-use super::external_clock::{CaptureTimer, External, Internal, judged, measure};
+use super::external_clock::{CaptureTimer, External, Internal, measure, select_clock};
 use super::fifo_uart::FifoUart;
 use super::flash_slots::{Flash, FlashSlots};
 use super::internal_clock::back_to_internal;
@@ -92,7 +92,7 @@ impl Flash for SecondBank {
         self.flash.bank2().cr().read().lock().bit_is_set()
     }
 
-    fn take_key(&mut self, key: u32) {
+    fn write_key(&mut self, key: u32) {
         // SAFETY: the key register takes every word.
         self.flash.bank2().keyr().write(|w| unsafe { w.bits(key) });
     }
@@ -133,7 +133,7 @@ impl Flash for SecondBank {
         self.power.csr1().read().pvdo().bit_is_clear()
     }
 
-    fn take_writes(&mut self, on: bool) {
+    fn set_write_enable(&mut self, on: bool) {
         // SAFETY: programming (1), by double words (4).
         self.flash.bank2().cr().write(|w| unsafe { w.bits(u32::from(on) << 1 | 3 << 4) });
     }
@@ -177,7 +177,7 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
         let started = wait_until(|| clocks.cr().read().hserdy().bit_is_set());
         External { frequency, is_signal, measured: started.then(|| measured(clocks, timer, frequency)) }
     });
-    let clock = judged(external, &Stm32H743::INTERNAL);
+    let clock = select_clock(external, &Stm32H743::INTERNAL);
     let is_external = clock.source.is_external();
     if !is_external {
         clocks.cr().modify(|_, w| w.hseon().clear_bit());

@@ -62,7 +62,7 @@ pub struct As5047p<S> {
 }
 
 /// Magnet fault by the diagnostics. Without a magnet the field is too weak and the other bits are meaningless.
-fn judged(diagnostics: u16) -> Option<EncoderFault> {
+fn magnet_fault(diagnostics: u16) -> Option<EncoderFault> {
     let has = |flag: u16| diagnostics & flag != 0;
     match (has(WEAK), has(STRONG)) {
         (true, false) if has(OVERFLOW) || !has(READY) => Some(EncoderFault::MagnetLost),
@@ -93,7 +93,7 @@ impl<S: SpiDevice> As5047p<S> {
     }
 
     /// Reads another register with two more frames and requests the angle again.
-    fn aside(&mut self, register: Register) -> Result<u16, EncoderFault> {
+    fn read_register(&mut self, register: Register) -> Result<u16, EncoderFault> {
         self.exchange(register)?;
         let frame = self.exchange(Register::Angle)?;
         if frame.count_ones().is_multiple_of(2) { Ok(frame & CONTENT) } else { Err(EncoderFault::Parity) }
@@ -116,14 +116,14 @@ impl<S: SpiDevice> CountSource for As5047p<S> {
         }
         if frame & ERROR != 0 {
             // Reading the error register also clears the flag.
-            return Err(EncoderFault::Reported(self.aside(Register::Errors)?));
+            return Err(EncoderFault::Reported(self.read_register(Register::Errors)?));
         }
         if frame == NOBODY_LOW || self.until_look == 0 {
-            let diagnostics = self.aside(Register::Diagnostics)?;
+            let diagnostics = self.read_register(Register::Diagnostics)?;
             if diagnostics == 0 {
                 return Err(EncoderFault::Missing);
             }
-            self.magnet = judged(diagnostics);
+            self.magnet = magnet_fault(diagnostics);
             self.until_look = BETWEEN_LOOKS;
         }
         self.until_look -= 1;

@@ -43,11 +43,11 @@ pub struct Digests {
 
 /// Runs all motions of a joint.
 pub fn digests<const N: usize>(tables: &Tables<f32, N>) -> Digests {
-    let (long, changes) = long(tables);
-    Digests { long, unbounded: unbounded(tables), tiny: tiny(tables), changes }
+    let (long, changes) = long_motion(tables);
+    Digests { long, unbounded: unbounded_motion(tables), tiny: tiny_motion(tables), changes }
 }
 
-fn long<const N: usize>(tables: &Tables<f32, N>) -> (u64, u32) {
+fn long_motion<const N: usize>(tables: &Tables<f32, N>) -> (u64, u32) {
     let (mut generator, mut model) = (RandomTorques::new(tables), Model::new(tables));
     let mut contacts = model.outputs().contacts;
     let (mut running, mut changes) = (digest::START, 0);
@@ -62,7 +62,7 @@ fn long<const N: usize>(tables: &Tables<f32, N>) -> (u64, u32) {
     (running, changes)
 }
 
-fn unbounded<const N: usize>(tables: &Tables<f32, N>) -> u64 {
+fn unbounded_motion<const N: usize>(tables: &Tables<f32, N>) -> u64 {
     let (mut generator, mut model) = (RandomTorques::new(tables), Model::new(tables));
     let mut running = digest::START;
     for step in 0..SHORT {
@@ -73,7 +73,7 @@ fn unbounded<const N: usize>(tables: &Tables<f32, N>) -> u64 {
     running
 }
 
-fn tiny<const N: usize>(tables: &Tables<f32, N>) -> u64 {
+fn tiny_motion<const N: usize>(tables: &Tables<f32, N>) -> u64 {
     let mut model = Model::new(tables);
     let mut random = Random::new(2);
     let (mut running, mut size) = (digest::START, 1.0_f32);

@@ -25,13 +25,13 @@ impl Random {
     }
 
     /// Returns a number from 0 to below 1, in steps of 2^-24.
-    pub fn part(&mut self) -> f32 {
+    pub fn fraction(&mut self) -> f32 {
         (self.bits() >> 40) as f32 * (1.0 / 16_777_216.0)
     }
 
     /// Returns a number from -1 to 1.
     pub fn signed(&mut self) -> f32 {
-        2.0 * self.part() - 1.0
+        2.0 * self.fraction() - 1.0
     }
 }
 
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_seed_gives_the_published_sequence() {
+    fn sequence_matches_publication() {
         // First numbers of seed 1234567 as printed by the authors' program.
         let mut random = Random::new(1_234_567);
         assert_eq!(random.bits(), 6_457_827_717_110_365_317);
@@ -48,11 +48,11 @@ mod tests {
     }
 
     #[test]
-    fn parts_and_whole_numbers_stay_in_their_ranges() {
+    fn numbers_within_ranges() {
         let mut random = Random::new(1);
         for _ in 0..10_000 {
             assert!(random.below(7) < 7);
-            assert!((0.0..1.0).contains(&random.part()));
+            assert!((0.0..1.0).contains(&random.fraction()));
             assert!((-1.0..=1.0).contains(&random.signed()));
         }
     }

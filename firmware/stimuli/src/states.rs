@@ -108,10 +108,10 @@ impl<'a, const N: usize> Trials<'a, N> {
     pub fn make(&mut self) -> Trial<N> {
         let kind = Kind::ALL[self.random.below(Kind::ALL.len() as u32) as usize];
         match (kind, self.worst) {
-            (Kind::Reached, _) => self.onward(),
+            (Kind::Reached, _) => self.continue_reached(),
             (Kind::Mutated, Some(worst)) => self.mutate(worst),
-            (Kind::Mutated, None) => self.place(Kind::AnySet),
-            _ => self.place(kind),
+            (Kind::Mutated, None) => self.random_trial(Kind::AnySet),
+            _ => self.random_trial(kind),
         }
     }
 
@@ -126,14 +126,14 @@ impl<'a, const N: usize> Trials<'a, N> {
     }
 
     /// Continues from the joint's state, sometimes with new torques.
-    fn onward(&mut self) -> Trial<N> {
+    fn continue_reached(&mut self) -> Trial<N> {
         if self.random.below(100) == 0 {
             self.torques = self.size.any(&mut self.random);
         }
         Trial { kind: Kind::Reached, state: self.reached, torques: self.torques }
     }
 
-    fn place(&mut self, kind: Kind) -> Trial<N> {
+    fn random_trial(&mut self, kind: Kind) -> Trial<N> {
         let (rigid, phase) = (self.rigid(), self.random.bits());
         let mut state = State { rigid, phase, ..State::REST };
         // Imposed errors at this phase: coordinate less deflection of each mesh.
@@ -165,7 +165,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         };
         let mut trial = Trial { kind, state, torques: self.torques() };
         if kind == Kind::Extreme {
-            each(&mut trial, |value| {
+            for_each_number(&mut trial, |value| {
                 if self.random.below(3) == 0 {
                     *value = EXTREMES[self.random.below(EXTREMES.len() as u32) as usize];
                 }
@@ -179,7 +179,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         let mut trial = Trial { kind: Kind::Mutated, ..worst };
         let one_in = 1 + self.random.below(8);
         let width = self.magnitude(-5, 0);
-        each(&mut trial, |value| {
+        for_each_number(&mut trial, |value| {
             if self.random.below(one_in) == 0 {
                 *value *= 1.0 + width * self.random.signed();
             }
@@ -245,12 +245,12 @@ impl<'a, const N: usize> Trials<'a, N> {
     fn magnitude(&mut self, from: i32, to: i32) -> f32 {
         let power = from + self.random.below(to.abs_diff(from)) as i32;
         let factor = if power < 0 { 0.1 } else { 10.0 };
-        (0..power.unsigned_abs()).fold(1.0 + 9.0 * self.random.part(), |size, _| size * factor)
+        (0..power.unsigned_abs()).fold(1.0 + 9.0 * self.random.fraction(), |size, _| size * factor)
     }
 }
 
 /// Visits every real number of a trial.
-fn each<const N: usize>(trial: &mut Trial<N>, mut show: impl FnMut(&mut f32)) {
+fn for_each_number<const N: usize>(trial: &mut Trial<N>, mut show: impl FnMut(&mut f32)) {
     for relative in [&mut trial.state.position, &mut trial.state.rate] {
         relative.planets.iter_mut().for_each(&mut show);
         show(&mut relative.gap);

@@ -28,7 +28,7 @@ fn run(tables: &Tables<f32, 3>) -> Vec<(Trial<3>, Class)> {
 }
 
 #[test]
-fn every_class_of_contact_comes_about_often() {
+fn every_contact_class_frequent() {
     let tables = tables();
     let found = run(&tables);
     for class in Class::ALL {
@@ -46,7 +46,7 @@ fn every_class_of_contact_comes_about_often() {
 }
 
 #[test]
-fn a_seed_gives_the_same_trials_again() {
+fn same_seed_same_trials() {
     let tables = tables();
     let (first, second) = (run(&tables), run(&tables));
     let text = |found: &[(Trial<3>, Class)]| found.iter().map(|trial| format!("{trial:?}")).collect::<Vec<_>>();

@@ -131,7 +131,7 @@ impl Flash {
     /// Flash with a stored memory.
     pub fn holding(memory: &Memory) -> Self {
         let flash = Self::empty();
-        KeptMemory::open(flash.clone()).keep(memory);
+        KeptMemory::open(flash.clone()).store(memory);
         flash.cells().erased = 0;
         flash
     }
@@ -142,7 +142,7 @@ impl Flash {
 
     /// Memory that a board would find.
     pub fn kept(&self) -> Option<Memory> {
-        KeptMemory::open(self.clone()).recall()
+        KeptMemory::open(self.clone()).load()
     }
 }
 
@@ -303,7 +303,7 @@ where
         let mut nothing_to_do = 0;
         while nothing_to_do < 200 {
             self.serial.service();
-            let busy = self.conversation.attend(&mut |_| Resources::default());
+            let busy = self.conversation.poll(&mut |_| Resources::default());
             self.conversation.serve_flash(&mut self.kept, |write| {
                 assert!(!self.enable.get(), "flash is written with the output on");
                 write()

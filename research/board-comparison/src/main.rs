@@ -125,7 +125,10 @@ mod comparison {
             };
             let digest = moving::follow(moving, steps, |_| (), step);
             let [slow, middle, fast] = samples.map(|sample| sample.most);
-            measuring::say(format_args!("{job},{},{sum},{most},{slow},{middle},{fast},{digest:016x}", schedule.steps));
+            measuring::print_line(format_args!(
+                "{job},{},{sum},{most},{slow},{middle},{fast},{digest:016x}",
+                schedule.steps
+            ));
         }
     }
 

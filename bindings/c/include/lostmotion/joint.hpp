@@ -30,9 +30,9 @@ using Motion = JointMotion;
 using Impedance = JointImpedance;
 using Torque = JointTorque;
 
-/* Tables that `joint tables` wrote. They stay where they are and as they are while an object is used. */
+/* Tables that `joint tables` wrote. They must not move or change while an object uses them. */
 using Tables = std::span<const std::uint64_t>;
-/* What an observer has learnt, for the next power-up. */
+/* Memory of an observer, for the next power-up. */
 using Memory = std::array<std::uint8_t, JOINT_MEMORY_BYTES>;
 
 [[nodiscard]] constexpr bool ok(Status status) noexcept { return status == JOINT_STATUS_OK; }
@@ -44,7 +44,7 @@ using Memory = std::array<std::uint8_t, JOINT_MEMORY_BYTES>;
     return joint_tables_facts(tables.data(), tables.size_bytes(), &facts);
 }
 
-/* Storage of an object. Its address is part of it. */
+/* Storage of an object, which cannot be moved: the object depends on its address. */
 template <typename Storage> class Object {
   public:
     Object() = default;
@@ -54,7 +54,7 @@ template <typename Storage> class Object {
     Object &operator=(Object &&) = delete;
     ~Object() = default;
 
-    /* For functions of joint.h. */
+    /* Object for functions of joint.h. */
     [[nodiscard]] Storage *get() noexcept { return &storage; }
     [[nodiscard]] const Storage *get() const noexcept { return &storage; }
 
@@ -64,11 +64,11 @@ template <typename Storage> class Object {
 
 class Observer : public Object<JointObserver> {
   public:
-    /* With maps of the encoders' errors. */
+    /* Starts with maps of the encoders' errors. */
     [[nodiscard]] Status start(Tables tables) noexcept {
         return joint_observer_start(get(), sizeof(JointObserver), tables.data(), tables.size_bytes());
     }
-    /* For ideal encoders, or where flash is short. */
+    /* Starts without maps: for ideal encoders, or where flash is short. */
     [[nodiscard]] Status start_without_maps(Tables tables) noexcept {
         return joint_observer_start_without_maps(get(), sizeof(JointObserver), tables.data(), tables.size_bytes());
     }
@@ -93,7 +93,7 @@ class Compensation : public Object<JointCompensation> {
     [[nodiscard]] Status start(Tables tables) noexcept {
         return joint_compensation_start(get(), sizeof(JointCompensation), tables.data(), tables.size_bytes());
     }
-    /* One control period of position control. `ahead` is the motion by facts.lead_s later, or nullptr if that is not known. */
+    /* One control period of position control. `ahead` is the motion by facts.lead_s later, or nullptr if it is unknown. */
     [[nodiscard]] Status follow(const Observer &observer, const Motion &now, const Motion *ahead, Torque &torque) noexcept {
         return joint_compensation_follow(get(), observer.get(), &now, ahead, &torque);
     }
@@ -105,11 +105,11 @@ class Compensation : public Object<JointCompensation> {
 
 class Probe : public Object<JointProbe> {
   public:
-    /* The load is to be held, and the motor at rest. */
+    /* The load must be held, and the motor at rest. */
     [[nodiscard]] Status start(Tables tables) noexcept {
         return joint_probe_start(get(), sizeof(JointProbe), tables.data(), tables.size_bytes());
     }
-    /* One control period, in place of the compensation's. */
+    /* One control period, instead of the compensation's. */
     [[nodiscard]] Status step(const Observer &observer, JointProbed &probed) noexcept {
         return joint_probe_step(get(), observer.get(), &probed);
     }
@@ -117,11 +117,11 @@ class Probe : public Object<JointProbe> {
 
 class Wiring : public Object<JointWiring> {
   public:
-    /* The joint is to be at rest, and free to turn by a few degrees at the output. */
+    /* The joint must be at rest, and free to turn by a few degrees at the output. */
     [[nodiscard]] Status start(Tables tables) noexcept {
         return joint_wiring_start(get(), sizeof(JointWiring), tables.data(), tables.size_bytes());
     }
-    /* One control period, in place of the observer's and the compensation's. */
+    /* One control period, instead of the observer's and the compensation's. */
     [[nodiscard]] Status step(const Samples &samples, float allowed_torque_Nm, JointWiringStep &step) noexcept {
         return joint_wiring_step(get(), &samples, allowed_torque_Nm, &step);
     }

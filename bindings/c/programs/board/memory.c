@@ -1,6 +1,6 @@
 /*
- * The functions of a C library that the library calls, for a program without one: a link with -nostdlib needs this file and
- * nothing else. Names of the Arm run-time ABI stand beside those of C.
+ * Functions of the C library that the library calls, for a program without a C library: with -nostdlib, link this file.
+ * Includes the names of the Arm run-time ABI.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -9,7 +9,7 @@ void *memcpy(void *restrict to, const void *restrict from, size_t bytes);
 void *memmove(void *to, const void *from, size_t bytes);
 void *memset(void *to, int value, size_t bytes);
 
-/* The compiler would turn these loops into calls of themselves. */
+/* Without this the compiler would turn the loops into calls of the same functions. */
 #pragma GCC optimize("no-tree-loop-distribute-patterns")
 
 void *memcpy(void *restrict to, const void *restrict from, size_t bytes) {

@@ -1,6 +1,6 @@
 /*
- * What a Cortex-M4F or M7 needs before main, without the vendor's files: vectors, memory, the floating-point unit, and the
- * emulator's semihosting as the place where lines go. For the emulator alone.
+ * Start-up of a Cortex-M4F or M7 without the vendor's files: vectors, memory, the floating-point unit, and output through
+ * the emulator's semihosting. For the emulator only.
  */
 #include "../say.h"
 
@@ -50,7 +50,7 @@ static void fault(void) {
     end(1);
 }
 
-/* A program without a tick leaves it as it is. */
+/* Default for programs without a tick. */
 __attribute__((weak)) void SysTick_Handler(void) {}
 
 __attribute__((section(".vectors"), used)) static void (*const vectors[15])(void) = {

@@ -196,8 +196,8 @@ impl Tick {
 pub struct Idle(Conversation<'static, TestProtocol>);
 
 impl Idle {
-    pub fn attend(&mut self) {
-        self.0.attend(&mut |_| Resources::default());
+    pub fn poll(&mut self) {
+        self.0.poll(&mut |_| Resources::default());
     }
 }
 
@@ -275,9 +275,9 @@ fn access_all(progress: &Progress) {
 pub fn running() -> (Interrupt, Tick, Idle) {
     let (mut interrupt, mut tick, mut idle) = board();
     interrupt.receive_message(&ToBoard::Reset(SETTINGS));
-    idle.attend();
+    idle.poll();
     tick.tick();
-    idle.attend();
+    idle.poll();
     assert!(tick.is_on() && matches!(interrupt.sent_messages()[..], [FromBoard::Hello(_)]));
     (interrupt, tick, idle)
 }

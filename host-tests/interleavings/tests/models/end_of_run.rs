@@ -11,18 +11,18 @@ fn failed_run_reports_trip_after_last_sample() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = running();
         interrupt.receive_message(&schedule(0, 0, &[1.0, 13.0]));
-        idle.attend();
+        idle.poll();
         tick.tick();
         let idle_thread = thread::spawn(move || {
-            idle.attend();
-            idle.attend();
+            idle.poll();
+            idle.poll();
             idle
         });
         tick.tick();
         assert!(!tick.is_on());
         let mut idle = idle_thread.join().unwrap();
         for _ in 0..4 {
-            idle.attend();
+            idle.poll();
         }
         let sent_messages = interrupt.sent_messages();
         let samples: Vec<u8> = sent_messages

@@ -12,9 +12,9 @@ fn every_step_uses_the_command_of_its_tick() {
         let (mut interrupt, mut tick, mut idle) = running();
         interrupt.receive_message(&schedule(0, 0, &[1.0, 2.0]));
         interrupt.receive_message(&schedule(1, 2, &[3.0]));
-        idle.attend();
+        idle.poll();
         tick.tick();
-        let idle_thread = thread::spawn(move || idle.attend());
+        let idle_thread = thread::spawn(move || idle.poll());
         for _ in 0..2 {
             tick.tick();
         }
@@ -32,19 +32,19 @@ fn next_run_uses_its_own_commands() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = running();
         interrupt.receive_message(&schedule(0, 0, &[1.0, 2.0]));
-        idle.attend();
+        idle.poll();
         tick.tick();
         tick.tick();
         interrupt.receive_message(&ToBoard::Stop);
-        idle.attend();
+        idle.poll();
         tick.tick();
-        idle.attend();
+        idle.poll();
         interrupt.receive_message(&ToBoard::Reset(SETTINGS));
         interrupt.receive_message(&schedule(0, 0, &[3.0]));
-        idle.attend();
+        idle.poll();
         let idle_thread = thread::spawn(move || {
             for _ in 0..3 {
-                idle.attend();
+                idle.poll();
             }
             idle
         });
@@ -52,7 +52,7 @@ fn next_run_uses_its_own_commands() {
         tick.tick();
         let mut idle = idle_thread.join().unwrap();
         for _ in 0..2 {
-            idle.attend();
+            idle.poll();
             tick.tick();
         }
         let sent_messages = interrupt.sent_messages();

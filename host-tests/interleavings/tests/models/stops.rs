@@ -61,7 +61,7 @@ fn stop_behind_reset_prevents_the_run() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
         interrupt.receive_message(&ToBoard::Reset(SETTINGS));
-        idle.attend();
+        idle.poll();
         let line = thread::spawn(move || {
             interrupt.receive_message(&ToBoard::Stop);
             interrupt
@@ -96,8 +96,8 @@ fn idle_tells_read_stops_from_unread_ones() {
             interrupt.receive_message(&ToBoard::Stop);
             interrupt
         });
-        idle.attend();
-        idle.attend();
+        idle.poll();
+        idle.poll();
         let mut interrupt = line.join().unwrap();
         settle(&mut tick, &mut idle);
         assert_eq!(interrupt.sent_messages(), [FromBoard::Tripped(Trip::Overtaken)]);
@@ -109,6 +109,6 @@ fn settle(tick: &mut Tick, idle: &mut Idle) {
     for _ in 0..4 {
         tick.tick();
         assert!(!tick.is_on(), "a run was begun, or goes on, after a stop");
-        idle.attend();
+        idle.poll();
     }
 }

@@ -237,10 +237,10 @@ fn new_run_log() -> Option<Vec<u8>> {
     fs::write(&path, test).ok()?;
     let group = TestGroup { path, choice: suite::Choice::Full, plant: PlantName::Core, boards: None };
     let request = TestRequest {
-        parts: vec![group],
+        groups: vec![group],
         seed: Some(Seeds { first: 1, last: 1 }),
         full: false,
-        memories: false,
+        save_memories: false,
         name: "test".to_owned(),
         out: Some(folder.path().join("out")),
         json: None,

@@ -32,7 +32,7 @@ struct Compared {
 
 /// What `joint sim --scheme all` says of the board's step on a motion.
 fn in_sim(motion: &Motion, board: &Board) -> Option<Errors> {
-    errors_against_reference(&motion.for_sim(board.processor()), SchemeName::Realtime)
+    errors_against_reference(&motion.simulation_spec(board.processor()), SchemeName::Realtime)
         .expect("a motion that the reference can follow")
 }
 

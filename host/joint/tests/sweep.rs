@@ -111,7 +111,7 @@ fn killed_sweep_resumes_to_equal_bytes() {
     assert!((60..301).contains(&kept), "{kept}");
     assert!(!path.join("points.csv").exists());
     let ended = joint(&arguments).succeeded();
-    assert!(ended.err.contains("going on:"), "{ended:?}");
+    assert!(ended.err.contains("continuing:"), "{ended:?}");
     assert_eq!(result(&path), expected);
 }
 
@@ -158,7 +158,7 @@ fn full_disk_keeps_finished_points() {
     joint_on_a_full_disk(12, &arguments).refused(&["cannot write", "free some space", "points of this run are kept"]);
     assert!(lines(&journal(&path)) > 20 && !path.join("points.csv").exists());
     let ended = joint(&arguments).succeeded();
-    assert!(ended.err.contains("going on:"), "{ended:?}");
+    assert!(ended.err.contains("continuing:"), "{ended:?}");
     assert_eq!(result(&path), result(&expected));
 }
 

@@ -325,7 +325,7 @@ fn test_file_errors_name_remedy() {
     refused("profile = \"T2\"\n[assert]\nrms_mrad = \"<= 8\"\n[controller]\nshort_run = \"loop\"", &["short_run"]);
     refused("short_run = \"plant\"\nprofile = \"T2\"", &["observer", "loop"]);
     refused("settle_s = 1", &["not TOML"]);
-    let many = ["`seeds`: 1000000000 seeds are too many, 10000 are the most", "as in 5"];
+    let many = ["`seeds`: 1000000000 seeds are too many, at most 10000 are possible", "as in 5"];
     refused("profile = \"T2\"\nseeds = 1000000000", &many);
     refused("profile = \"T2\"\nseeds = -1", &["`seeds` names no seeds", "as in 5"]);
     refused(

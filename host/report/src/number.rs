@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn typed_numbers_are_exact() {
-        let told = [0.0, -1.0, 0.25, 1e308, 1e-300, f64::NAN].map(|value| TYPED.write(value));
-        assert_eq!(told, ["0", "-1", "0.25", "1e308", "1e-300", "NaN"]);
+        let texts = [0.0, -1.0, 0.25, 1e308, 1e-300, f64::NAN].map(|value| TYPED.write(value));
+        assert_eq!(texts, ["0", "-1", "0.25", "1e308", "1e-300", "NaN"]);
     }
 }

@@ -8,11 +8,12 @@ use crate::plot::panel::Panel;
 use crate::plot::unit::{TORQUE, Unit, greatest};
 
 /// Caption of pictures of long series.
-pub const THINNED: &str = "Where a picture has fewer columns than samples, least and greatest of each column are kept.";
+pub const THINNED: &str =
+    "A picture with fewer columns than samples shows the least and the greatest sample of each column.";
 /// Caption of pictures of deflections and contact.
 pub const DEFLECTIONS: &str = "Deflection of every mesh. Above the shaded band the drive side carries, below it the back \
-                               side, inside it the teeth are parted. Strips that stand for many samples show the share \
-                               of each state by height.";
+                               side, inside it the teeth are separated. Strips that stand for many samples show the \
+                               share of each state by height.";
 
 /// Definition of the gap coordinate.
 pub fn gap_coordinate() -> Text {

@@ -47,16 +47,16 @@ pub fn assert_valid(name: &str, value: &Value) {
 fn violations(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
     let mut found = Vec::new();
     let Value::Object(rules) = schema else { return found };
-    for (rule, told) in rules {
-        match (rule.as_str(), told, value) {
+    for (rule, wanted) in rules {
+        match (rule.as_str(), wanted, value) {
             ("$ref", Value::String(to), _) => match root.pointer(to.trim_start_matches('#')) {
                 Some(schema) => found.extend(violations(root, schema, value, place)),
                 None => found.push(format!("{to} is not in the schema")),
             },
-            ("type", told, _) => {
-                let told = told.as_array().cloned().unwrap_or_else(|| vec![told.clone()]);
-                if !told.iter().filter_map(Value::as_str).any(|told| has_type(told, value)) {
-                    found.push(format!("{place} is {value}, not {told:?}"));
+            ("type", wanted, _) => {
+                let wanted = wanted.as_array().cloned().unwrap_or_else(|| vec![wanted.clone()]);
+                if !wanted.iter().filter_map(Value::as_str).any(|wanted| has_type(wanted, value)) {
+                    found.push(format!("{place} is {value}, not {wanted:?}"));
                 }
             }
             ("anyOf" | "oneOf", Value::Array(ways), _)
@@ -65,7 +65,7 @@ fn violations(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<S
                 found.push(format!("{place} is {value}, which is none of {} ways", ways.len()));
             }
             ("enum", Value::Array(words), _) if !words.contains(value) => found.push(format!("{place} is {value}")),
-            ("const", told, _) if told != value => found.push(format!("{place} is {value}, not {told}")),
+            ("const", wanted, _) if wanted != value => found.push(format!("{place} is {value}, not {wanted}")),
             ("required", Value::Array(names), Value::Object(map)) => {
                 let missing = names.iter().filter_map(Value::as_str).filter(|name| !map.contains_key(*name));
                 found.extend(missing.map(|name| format!("{place}/{name} is missing")));
@@ -87,13 +87,13 @@ fn violations(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<S
                 let each = values.iter().enumerate();
                 found.extend(each.flat_map(|(at, value)| violations(root, schema, value, &format!("{place}/{at}"))));
             }
-            ("minItems", told, Value::Array(values)) if told.as_u64() > Some(values.len() as u64) => {
+            ("minItems", wanted, Value::Array(values)) if wanted.as_u64() > Some(values.len() as u64) => {
                 found.push(format!("{place} has {} entries", values.len()));
             }
-            ("maxItems", told, Value::Array(values)) if told.as_u64() < Some(values.len() as u64) => {
+            ("maxItems", wanted, Value::Array(values)) if wanted.as_u64() < Some(values.len() as u64) => {
                 found.push(format!("{place} has {} entries", values.len()));
             }
-            ("minimum", told, Value::Number(number)) if number.as_f64() < told.as_f64() => {
+            ("minimum", wanted, Value::Number(number)) if number.as_f64() < wanted.as_f64() => {
                 found.push(format!("{place} is {number}"));
             }
             _ => {}

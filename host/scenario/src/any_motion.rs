@@ -116,15 +116,15 @@ pub fn real_motion(motion: Option<RealMotion>, joint: &Knowledge, truth: &JointF
 
 /// Motor torque left for acceleration and load, at the link [N m].
 pub(super) fn available_torque(joint: &Knowledge, truth: &JointFile) -> f64 {
-    let around = &truth.surroundings;
-    let errors = &around.torque_errors;
-    let motor = around.torque_limit
-        * (1.0 + around.torque_constant_error_ratio.min(0.0))
+    let surroundings = &truth.surroundings;
+    let errors = &surroundings.torque_errors;
+    let motor = surroundings.torque_limit
+        * (1.0 + surroundings.torque_constant_error_ratio.min(0.0))
         * (1.0 - errors.saturation_ratio)
         * (1.0 - errors.ripple_ratio);
-    let at_motor = motor - joint.motor_friction - around.cogging_torque;
-    let weight = around.payload_step.ratio.max(1.0) * joint.gravity.abs();
-    around.efficiency * joint.ratio * at_motor - weight - breakaway_torque(joint, truth)
+    let at_motor = motor - joint.motor_friction - surroundings.cogging_torque;
+    let weight = surroundings.payload_step.ratio.max(1.0) * joint.gravity.abs();
+    surroundings.efficiency * joint.ratio * at_motor - weight - breakaway_torque(joint, truth)
 }
 
 /// Dry friction of the link at rest [N m].

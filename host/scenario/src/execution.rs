@@ -180,9 +180,9 @@ fn compensation_controller<'d>(
 
 /// Translator to the samples of an observer of the nominal joint.
 fn translator(case: &Case) -> Translator {
-    let around = &case.nominal_surroundings;
-    let settings = observer_settings(around);
-    let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn);
+    let surroundings = &case.nominal_surroundings;
+    let settings = observer_settings(surroundings);
+    let turns = [surroundings.motor_encoder, surroundings.output_encoder].map(|encoder| encoder.counts_per_turn);
     Translator::new(settings.clock_rate / settings.control_rate, turns, &case.zeros)
 }
 

@@ -178,18 +178,18 @@ fn run_groups(
             folder,
             done: &|runs| progress.set_position(runs),
         };
-        let one = |test: &Test| {
-            let one = campaign::run(test, &options, &finished_runs);
-            one.iter().for_each(|one| progress.print_above(&page::line(&one.record)));
-            one
+        let run = |test: &Test| {
+            let outcome = campaign::run(test, &options, &finished_runs);
+            outcome.iter().for_each(|finished| progress.print_above(&page::line(&finished.record)));
+            outcome
         };
         // A test on the emulated board uses one core at most; a test on the host uses all cores.
         let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
-        let done: Vec<Outcome<FinishedTest>> =
-            if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };
-        for (test, one) in tests.iter().zip(done) {
-            match one {
-                Ok(one) => tested.push(one),
+        let outcomes: Vec<Outcome<FinishedTest>> =
+            if emulated { tests.par_iter().map(run).collect() } else { tests.iter().map(run).collect() };
+        for (test, outcome) in tests.iter().zip(outcomes) {
+            match outcome {
+                Ok(finished) => tested.push(finished),
                 Err(failure) if failure.exit_code() == EXIT_INTERRUPTED => return Err(failure),
                 Err(failure) => not_run.push(NotRun::new(test.name.clone(), &failure)),
             }
@@ -214,9 +214,9 @@ fn verdict(record: &TestsRecord) -> Outcome<()> {
     let all = record.tests.len() + record.not_run.len();
     let not_run = match record.not_run.as_slice() {
         [] => None,
-        [one] => Some(format!("{} was not run: {}", one.file, one.why)),
+        [test] => Some(format!("{} was not run: {}", test.file, test.why)),
         many => {
-            let files: Vec<&str> = many.iter().map(|one| one.file.as_str()).collect();
+            let files: Vec<&str> = many.iter().map(|test| test.file.as_str()).collect();
             Some(format!("{} of {all} tests were not run: {}", many.len(), files.join(", ")))
         }
     };
@@ -224,7 +224,7 @@ fn verdict(record: &TestsRecord) -> Outcome<()> {
         (true, None) => Ok(()),
         (true, Some(not_run)) => {
             let remedy =
-                record.not_run.first().and_then(|one| one.remedy.clone()).filter(|_| record.not_run.len() == 1);
+                record.not_run.first().and_then(|test| test.remedy.clone()).filter(|_| record.not_run.len() == 1);
             Err(Failure::new(not_run)
                 .with_help(remedy.unwrap_or_else(|| "each is named above with its reason".to_owned())))
         }

@@ -218,8 +218,8 @@ fn final_errors(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let meshes = (1.0 / joint.sun_planet.mean_stiffness + 1.0 / joint.ring_planet.mean_stiffness)
         / (joint.geometry.planets as f64 * (2.0 * lever).powi(2));
     let compliance = meshes + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
-    let around = &case.truth.surroundings;
-    let skew = around.output_encoder.skew - around.motor_encoder.skew;
+    let surroundings = &case.truth.surroundings;
+    let skew = surroundings.output_encoder.skew - surroundings.motor_encoder.skew;
     vec![
         ("width_error", 100.0 * (f64::from(observed.half_backlash) / truth.half_backlash - 1.0).abs()),
         ("compliance_error", 100.0 * (f64::from(observed.compliance) / compliance - 1.0).abs()),

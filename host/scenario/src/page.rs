@@ -52,7 +52,7 @@ pub fn document(record: &TestsRecord, tested: &[FinishedTest]) -> Document {
     if tested.len() > 1 {
         blocks.push(overview(record));
     }
-    blocks.extend(failed.iter().chain(&passed).map(|test| one(test)));
+    blocks.extend(failed.iter().chain(&passed).map(|test| test_section(test)));
     blocks.push(origin(record));
     let on = text("On the ")
         + distinct_words(record, |test| &test.on)
@@ -123,7 +123,7 @@ fn tiles(record: &TestsRecord) -> Block {
 
 /// Failures of all tests, with the commands that repeat them.
 fn failures(record: &TestsRecord) -> Block {
-    let one = |test: &TestRecord| {
+    let failure_notice = |test: &TestRecord| {
         let title = (!test.title.is_empty()).then(|| format!(" – {}", test.title));
         let broken = test.broken.iter().map(|why| format!("Broken off: {why}").into());
         let refused = test.runs.iter().filter_map(|run| {
@@ -134,7 +134,7 @@ fn failures(record: &TestsRecord) -> Block {
         let more = more.chain([Block::Again(test.replay.clone())]).collect();
         Block::Notice(Notice { tone: Tone::Failed, alert: false, text: strong(&test.file) + title, more })
     };
-    section("What failed", record.tests.iter().filter(|test| !test.passed).map(one).collect())
+    section("What failed", record.tests.iter().filter(|test| !test.passed).map(failure_notice).collect())
 }
 
 fn failure_text(assertion: &AssertionRecord) -> Text {
@@ -188,7 +188,7 @@ fn anchor(test: &TestRecord) -> String {
 }
 
 /// Section of one test.
-fn one(tested: &FinishedTest) -> Block {
+fn test_section(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let (tone, word) = verdict(test);
     let title = (!test.title.is_empty()).then(|| strong(&test.title) + " · ");
@@ -203,7 +203,7 @@ fn one(tested: &FinishedTest) -> Block {
             PAGE.write(test.settle_s)
         );
     let seeds = match test.seeds.as_slice() {
-        [one] => format!("seed {one}"),
+        [seed] => format!("seed {seed}"),
         many => format!("{} seeds", many.len()),
     };
     let line = format!(

@@ -123,14 +123,14 @@ fn core_state<const N: usize>(
 }
 
 /// Rejects effects that the plant does not model.
-pub fn reject_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
+pub fn reject_effects(name: PlantName, surroundings: &Surroundings) -> Outcome<()> {
     let why = |effect: Effect| match effect {
         Effect::Hysteresis => Some("its spring between carrier and link has no loss but damping"),
         Effect::PayloadStep => Some("its inertias are tables"),
         Effect::ControlJitter => Some("it is stepped by whole ticks"),
         _ => None,
     };
-    let lacking = around.effects().find_map(|effect| Some((effect, why(effect)?)));
+    let lacking = surroundings.effects().find_map(|effect| Some((effect, why(effect)?)));
     match lacking.filter(|_| name == PlantName::Core) {
         Some((effect, why)) => {
             let message = format!("the core's joint cannot have `{}`: {why}", effect.key());
@@ -307,13 +307,13 @@ mod tests {
         joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint").parameters
     }
 
-    fn plant_of(name: PlantName, around: Surroundings, pushes: Vec<Disturbance>) -> Outcome<Plant> {
+    fn plant_of(name: PlantName, surroundings: Surroundings, pushes: Vec<Disturbance>) -> Outcome<Plant> {
         let train = DriveTrainParameters {
             effect_phases: reference::drive_train::EffectPhases {
                 width: [std::f64::consts::FRAC_PI_2, 0.0],
                 ..Default::default()
             },
-            ..around.into()
+            ..surroundings.into()
         };
         plant(name, &q1(), &train, pushes, 1)
     }
@@ -327,10 +327,10 @@ mod tests {
             ("`control_jitter_ratio`", |of| of.control_jitter_ratio = 0.05),
         ];
         for (key, change) in lacking {
-            let mut around = Surroundings::ideal();
-            change(&mut around);
-            assert!(plant_of(PlantName::Reference, around, Vec::new()).is_ok(), "{key}");
-            let refused = plant_of(PlantName::Core, around, Vec::new()).err().expect("it is refused");
+            let mut surroundings = Surroundings::ideal();
+            change(&mut surroundings);
+            assert!(plant_of(PlantName::Reference, surroundings, Vec::new()).is_ok(), "{key}");
+            let refused = plant_of(PlantName::Core, surroundings, Vec::new()).err().expect("it is refused");
             assert!(refused.message().contains(key), "{refused}");
             assert!(refused.help().is_some_and(|help| help.contains("--plant reference")), "{refused}");
         }
@@ -338,14 +338,14 @@ mod tests {
 
     #[test]
     fn payload_swings_alike_on_plants() {
-        let around = Surroundings {
+        let surroundings = Surroundings {
             payload: Payload { inertia_share: 0.5, frequency: 12.0, damping_ratio: 0.02 },
             ..Surroundings::ideal()
         };
         let push = |start, torque| Disturbance::Pulse { start, duration: 2e-3, torque };
         let speeds = |name| -> Vec<f64> {
             let pushes = vec![push(0.0, 1.0), push(0.004, -1.0)];
-            let mut plant = plant_of(name, around, pushes).expect("a plant");
+            let mut plant = plant_of(name, surroundings, pushes).expect("a plant");
             let step = |_| {
                 plant.advance(0.0).expect("it runs");
                 plant.joint().link_speed
@@ -360,14 +360,14 @@ mod tests {
 
     #[test]
     fn backlash_varies_alike_on_plants() {
-        let around = Surroundings {
+        let surroundings = Surroundings {
             width: WidthVariation { per_link_turn: 0.3, per_motor_turn: 0.0 },
             load_friction: Friction { coulomb: 5.0, ..Friction::default() },
             motor_friction: Friction { viscous: 2e-2, ..Friction::default() },
             ..Surroundings::ideal()
         };
         for name in [PlantName::Core, PlantName::Reference] {
-            let mut plant = plant_of(name, around, Vec::new()).expect("a plant");
+            let mut plant = plant_of(name, surroundings, Vec::new()).expect("a plant");
             let mut end = |push: f64| {
                 (0..1500).for_each(|_| plant.advance(push).expect("it runs"));
                 plant.joint().gap

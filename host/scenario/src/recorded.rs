@@ -126,12 +126,12 @@ fn set_speeds(rows: &mut [Row]) {
     // Forward elimination: the speed of a row is a constant less a share of the next row's speed.
     let mut constant_and_share = vec![(0.0, 0.0); rows.len()];
     for index in 1..rows.len() - 1 {
-        let [before, here, after] = [rows[index - 1], rows[index], rows[index + 1]];
-        if before.position == here.position && here.position == after.position {
+        let [before, current, after] = [rows[index - 1], rows[index], rows[index + 1]];
+        if before.position == current.position && current.position == after.position {
             continue;
         }
-        let (h1, h2) = (here.time - before.time, after.time - here.time);
-        let (d1, d2) = ((here.position - before.position) / h1, (after.position - here.position) / h2);
+        let (h1, h2) = (current.time - before.time, after.time - current.time);
+        let (d1, d2) = ((current.position - before.position) / h1, (after.position - current.position) / h2);
         let (constant, share) = constant_and_share[index - 1];
         let pivot = 2.0 * (h1 + h2) - h2 * share;
         constant_and_share[index] = ((3.0 * (h2 * d1 + h1 * d2) - h2 * constant) / pivot, h1 / pivot);

@@ -195,7 +195,7 @@ impl RunHistory {
             self.digest = digest::chain(self.digest, value.to_bits());
         }
         if let Some(answer) = answer {
-            let observed = ObserverOutput::of(answer);
+            let observed = ObserverOutput::new(answer);
             for value in [observed.gap, observed.half_backlash, observed.load_torque, observed.trust] {
                 self.digest = digest::chain(self.digest, value.to_bits().into());
             }
@@ -207,7 +207,7 @@ impl RunHistory {
 }
 
 impl ObserverOutput {
-    fn of(answer: &Answer) -> Self {
+    fn new(answer: &Answer) -> Self {
         let Answer { estimates, shaped, probed } = *answer;
         Self {
             gap: estimates.gap.value,

@@ -145,8 +145,8 @@ fn reversal_error(settle: f64, case: &Case, history: &RunHistory) -> Option<f64>
     for (index, sample) in samples.iter().enumerate() {
         let speed = case.motion.at(sample.time).speed;
         if speed * before < 0.0 && sample.time >= settle {
-            let around = &samples[index.saturating_sub(reach)..(index + reach).min(samples.len())];
-            largest.push(around.iter().map(|s| (s.wanted - s.link).abs()).fold(0.0, f64::max));
+            let window = &samples[index.saturating_sub(reach)..(index + reach).min(samples.len())];
+            largest.push(window.iter().map(|s| (s.wanted - s.link).abs()).fold(0.0, f64::max));
         }
         if speed != 0.0 {
             before = speed;

@@ -23,11 +23,11 @@ pub struct Bandwidth {
 
 impl Bandwidth {
     /// Bandwidth of a joint in its drive train; `None` if no compensation can be designed.
-    pub fn for_joint(joint: &JointParameters, around: &Surroundings) -> Option<Self> {
-        let BandwidthRange { usual, widest, limit } = bandwidth_range(joint, around).ok()?;
+    pub fn for_joint(joint: &JointParameters, surroundings: &Surroundings) -> Option<Self> {
+        let BandwidthRange { usual, widest, limit } = bandwidth_range(joint, surroundings).ok()?;
         let by_rate = || "control rate, and delays of torque and current loop".to_owned();
         Some(Self {
-            control_rate_Hz: around.control_rate,
+            control_rate_Hz: surroundings.control_rate,
             usual_rad_per_s: usual,
             widest_rad_per_s: widest,
             limited_by: limit.map_or_else(by_rate, |limit| limit.to_string()),

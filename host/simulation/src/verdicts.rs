@@ -130,8 +130,8 @@ fn accuracy_verdict(
 ) -> Outcome<AccuracyVerdict> {
     let within = |errors: Option<Errors>, wanted: f64| errors.is_some_and(|errors| errors.greatest() <= wanted);
     let typical_up_to = |rate: u32, longest: f64| accuracy::typical(joint, &board.processor(), rate, longest);
-    let here = within(typical, wanted);
-    let mut found = here.then_some(rate);
+    let reached = within(typical, wanted);
+    let mut found = reached.then_some(rate);
     let tried = RATE_FACTORS.iter().map(|factor| on_board.nearest_divisor_rate(factor * f64::from(rate)));
     for candidate in tried.filter(|candidate| (on_board.lowest_rate()..=MAX_TRIED_RATE).contains(candidate)) {
         if found.is_some() {
@@ -144,7 +144,7 @@ fn accuracy_verdict(
     Ok(AccuracyVerdict {
         wanted,
         error: typical.map(|errors| errors.greatest()),
-        reached: here,
+        reached,
         rate_that_reaches_it_Hz: found,
         fits_there: found.map(|rate| on_board.obstacle(rate).is_none()),
     })

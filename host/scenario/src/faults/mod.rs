@@ -72,12 +72,12 @@ const MAX_DELAY_PERIODS: usize = 100_000;
 impl HostFaults {
     /// Faults of a run with the true joint and its true surroundings.
     pub fn new(faults: &[Fault], seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Self {
-        let around = &train.surroundings;
-        let encoders = [&around.motor_encoder, &around.output_encoder];
+        let surroundings = &train.surroundings;
+        let encoders = [&surroundings.motor_encoder, &surroundings.output_encoder];
         let stated = faults.iter().enumerate().map(|(index, fault)| ActiveFault::new(fault, index, seed));
         Self {
             faults: stated.chain(missing_frames(encoders.map(|encoder| encoder.missing_share), seed)).collect(),
-            period: 1.0 / f64::from(around.control_rate),
+            period: 1.0 / f64::from(surroundings.control_rate),
             counts_per_turn: encoders.map(|encoder| encoder.counts_per_turn as f64),
             home: None,
             start: [0; 2],

@@ -223,8 +223,8 @@ mod tests {
             let documented = document.lines().any(|line| line.starts_with(&row));
             assert!(documented, "no row `{row}`");
             for words in wanted {
-                let there = document.lines().any(|line| line.starts_with('|') && line.contains(&words));
-                assert!(there, "`{words}` of {} is in no table", key.name);
+                let is_documented = document.lines().any(|line| line.starts_with('|') && line.contains(&words));
+                assert!(is_documented, "`{words}` of {} is in no table", key.name);
             }
         }
     }

@@ -155,7 +155,7 @@ impl<'a> Section<'a> {
             _ => {
                 let count = seed(value);
                 if let Some(count) = count.filter(|count| *count > MAX_SEEDS) {
-                    let message = format!("`{name}`: {count} seeds are too many, {MAX_SEEDS} are the most");
+                    let message = format!("`{name}`: {count} seeds are too many, at most {MAX_SEEDS} are possible");
                     self.notes.error(value.span(), message, key.hint);
                     return None;
                 }

@@ -19,8 +19,8 @@ const WHOLE_TURN: f64 = 4_294_967_296.0;
 const MAX_TEST_FAULTS: usize = MAX_FAULTS - 2;
 
 /// Counts per turn of both encoders of a joint, motor first.
-pub fn counts_per_turn(around: &Surroundings) -> [i64; 2] {
-    [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed())
+pub fn counts_per_turn(surroundings: &Surroundings) -> [i64; 2] {
+    [surroundings.motor_encoder, surroundings.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed())
 }
 
 /// Least angle [2^-32 turns] at which an encoder has advanced by a number of counts. Added to another such angle it

@@ -57,9 +57,12 @@ impl BoardPort<'_> {
         let own = WireShaped::from(&answer.shaped);
         if answered.digest != self.digest || answered.shaped != own || answered.probed.map(Into::into) != answer.probed
         {
-            let (there, here) = (answered.shaped.torque, own.torque);
-            let what =
-                if there == here { "estimates".to_owned() } else { format!("torque {there:e} there, {here:e} here") };
+            let (on_board, on_host) = (answered.shaped.torque, own.torque);
+            let what = if on_board == on_host {
+                "estimates".to_owned()
+            } else {
+                format!("torque {on_board:e} on the board, {on_host:e} on the host")
+            };
             return Err(Failure::check_failed(format!(
                 "board and host differ in control period {}: {what}",
                 self.tick

@@ -56,8 +56,8 @@ impl Boards<'_> {
         pair: &RunJoints,
     ) -> Result<(RunHistory, BoardRun), RunError> {
         let designed = case.design(&test.file)?;
-        let around = &case.truth.surroundings;
-        let turns = counts_per_turn(around);
+        let surroundings = &case.truth.surroundings;
+        let turns = counts_per_turn(surroundings);
         let mut faults = mounting_faults(&case.zeros, turns).to_vec();
         faults.extend(quantised_faults(
             &test.file.faults,
@@ -91,7 +91,7 @@ impl Boards<'_> {
             tick.checked_sub(1).and_then(|index| digests.get(index as usize)).is_some_and(|own| *own == digest)
         };
         if let Some(first) = samples.iter().find(|sample| !agrees(sample.tick, sample.digest)) {
-            let time = f64::from(first.tick) / f64::from(around.control_rate);
+            let time = f64::from(first.tick) / f64::from(surroundings.control_rate);
             return Err(RunError::Broke(format!(
                 "board and host differ at t = {time:.4} s, control period {}, or in the periods since the sample before: \
                  the digest over joint and answers",

@@ -53,13 +53,13 @@ struct FaultPair {
 }
 
 impl FaultPair {
-    fn of(joint: &str) -> Self {
+    fn new(joint: &str) -> Self {
         let test = file::read("profile = \"T2\"").expect("a good file");
         let case = Case::new(&test, joint, 1, None).expect("a case");
-        let around = case.truth.surroundings;
-        let tables: Tables<f32, 3> = design(&case.truth.parameters, around.control_rate).expect("tables");
-        let table = design_surroundings(&case.truth.parameters, &around, &tables).expect("surroundings");
-        Self { case, table, turns: counts_per_turn(&around) }
+        let surroundings = case.truth.surroundings;
+        let tables: Tables<f32, 3> = design(&case.truth.parameters, surroundings.control_rate).expect("tables");
+        let table = design_surroundings(&case.truth.parameters, &surroundings, &tables).expect("surroundings");
+        Self { case, table, turns: counts_per_turn(&surroundings) }
     }
 
     /// Joints with encoders of 2^14 and 2^17 counts, and with counts that are no power of two.
@@ -69,7 +69,7 @@ impl FaultPair {
             ["motor", "output"].into_iter().zip(["20000", "100003"]).fold(q1.to_owned(), |text, (side, turn)| {
                 joint_file::change(&text, &format!("{side}_encoder.counts_per_turn"), turn).expect("a known key")
             });
-        [Self::of(q1), Self::of(&lines)]
+        [Self::new(q1), Self::new(&lines)]
     }
 
     /// Runs both encoders back and forth over more than a turn, with full torque commands of both signs.

@@ -63,14 +63,14 @@ fn is_at_rest(motion: Motion) -> bool {
 /// Tick that ends a segment: where a motion comes to rest or leaves rest, at the latest after `every` periods. A
 /// polynomial across such a point would start in the wrong direction.
 fn end_of_segment(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u32 {
-    let mut here = rests(tick + 1);
+    let mut current = rests(tick + 1);
     let mut before = rests(tick);
     for next in tick + 1..tick + every {
         let after = rests(next + 1);
-        if (0..2).any(|motion| here[motion] && !(before[motion] && after[motion])) {
+        if (0..2).any(|motion| current[motion] && !(before[motion] && after[motion])) {
             return next;
         }
-        (before, here) = (here, after);
+        (before, current) = (current, after);
     }
     tick + every
 }

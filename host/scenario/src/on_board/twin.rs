@@ -67,15 +67,15 @@ impl Twin<'_> {
 
     fn run_with<const N: usize>(&self) -> Outcome<TwinResult> {
         let joint = &self.truth.parameters;
-        let around = self.truth.surroundings;
+        let surroundings = self.truth.surroundings;
         let refused = |error: &dyn std::fmt::Display| {
             Failure::new(format!("joint `{}` cannot be simulated on {}: {error}", joint.name, self.board.name()))
         };
         let effort = Effort::Within(self.board.processor());
-        let tables: Tables<f32, N> =
-            design_scheme(joint, around.control_rate, Scheme::Realtime, effort).map_err(|error| refused(&error))?;
+        let tables: Tables<f32, N> = design_scheme(joint, surroundings.control_rate, Scheme::Realtime, effort)
+            .map_err(|error| refused(&error))?;
         let table: SurroundingsTable<f32> =
-            design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
+            design_surroundings(joint, &surroundings, &tables).map_err(|error| refused(&error))?;
         let mut controller = Controller::with_tables(&self.designed.observer, &self.designed.compensation);
         if self.file.from_memory {
             self.run_once(&tables, &table, &mut controller);

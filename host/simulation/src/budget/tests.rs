@@ -64,13 +64,13 @@ fn unstable_rate_fails_inexact_rate_is_reported() {
 #[test]
 fn offered_rate_reaches_accuracy() {
     let (joint, board) = (file("q1"), Board::emulated());
-    let here = budget("q1", &board, 20_000).verdicts.accuracy.error.expect("a motion that can be predicted");
-    let wanted = 0.5 * here;
+    let error = budget("q1", &board, 20_000).verdicts.accuracy.error.expect("a motion that can be predicted");
+    let wanted = 0.5 * error;
     let figures = summary(&joint, &board, Role::Plant, 20_000, wanted).expect("figures").verdicts.accuracy;
     assert!(!figures.reached && figures.wanted == wanted, "{figures:?}");
     let rate = figures.rate_that_reaches_it_Hz.expect("more sub-steps or a higher rate help");
-    let there = summary(&joint, &board, Role::Plant, rate, wanted).expect("figures").verdicts;
-    assert!(there.accuracy.reached && Some(there.time.fits) == figures.fits_there, "{there:?}");
+    let at_rate = summary(&joint, &board, Role::Plant, rate, wanted).expect("figures").verdicts;
+    assert!(at_rate.accuracy.reached && Some(at_rate.time.fits) == figures.fits_there, "{at_rate:?}");
 }
 
 /// An equivalent gear under constant torques does not swing, so only the reversals have an error.

@@ -80,7 +80,7 @@ fn tiles(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Block {
     let (length, unit) = if done < 0.5 { (1e3 * done, " ms") } else { (done, " s") };
     let mut tiles = vec![
         tile("Simulated", number(length) + quiet(format!("{unit} · {} ticks", PAGE.write(f64::from(figures.ticks))))),
-        tile("Teeth parted", number(1e2 * figures.separated_share()) + quiet(" % of the time")),
+        tile("Teeth separated", number(1e2 * figures.separated_share()) + quiet(" % of the time")),
         tile("Impacts", number(figures.impacts_per_s) + quiet(" /s, all meshes")),
         tile("Peak mesh force", number(figures.peak_force()) + quiet(" N")),
     ];
@@ -165,21 +165,21 @@ fn portraits(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Opti
 }
 
 fn contacts(figures: &SimulationSummary) -> Block {
-    let columns = ["drive side", "parted", "back side", "impacts", "mean", "RMS", "peak to peak", "peak force"];
+    let columns = ["drive side", "separated", "back side", "impacts", "mean", "RMS", "peak to peak", "peak force"];
     let columns = [words("Mesh")].into_iter().chain(columns.map(numbers)).collect();
     let rows = figures.meshes.iter().map(|mesh| {
-        let one = &mesh.figures;
+        let statistics = &mesh.figures;
         let of = |value: f64, decimals: usize, unit: &str| number_as(value, fixed(decimals)) + unit;
         row([
             text(&mesh.name),
-            of(1e2 * one.drive_side_share, 2, " %"),
-            of(1e2 * one.separated_share, 2, " %"),
-            of(1e2 * one.back_side_share, 2, " %"),
-            of(one.impacts_per_s, 1, " /s"),
-            of(1e6 * one.deflection_mean_m, 3, " µm"),
-            of(1e6 * one.deflection_rms_m, 3, " µm"),
-            of(1e6 * one.deflection_peak_to_peak_m, 3, " µm"),
-            of(one.peak_force_N, 1, " N"),
+            of(1e2 * statistics.drive_side_share, 2, " %"),
+            of(1e2 * statistics.separated_share, 2, " %"),
+            of(1e2 * statistics.back_side_share, 2, " %"),
+            of(statistics.impacts_per_s, 1, " /s"),
+            of(1e6 * statistics.deflection_mean_m, 3, " µm"),
+            of(1e6 * statistics.deflection_rms_m, 3, " µm"),
+            of(1e6 * statistics.deflection_peak_to_peak_m, 3, " µm"),
+            of(statistics.peak_force_N, 1, " N"),
         ])
     });
     let lead = "Counted from tick to tick: an impact is a landing on either flank.";
@@ -272,12 +272,12 @@ fn schemes(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option
     );
     let heads = ["deflections", "gap", "link offset", "cost", "sub-steps a tick"].map(numbers);
     let columns = [words("Scheme"), notes("").only(PAGES)].into_iter().chain(heads).collect();
-    let rows = comparison.rows.iter().zip(&comparison.tracks).map(|(one, track)| {
-        let errors = one.errors.map(|error| percent(one, error));
-        let method = one.method.map_or_else(String::new, |method| format!(" {method}"));
-        let substeps = one.substeps.map_or_else(|| "its own".into(), |count| format!("{count}{method}"));
-        let about = [strong(one.scheme), text(track.scheme.description())];
-        let cost = [number_as(one.cost_ratio, fixed(2)), text(substeps)];
+    let rows = comparison.rows.iter().zip(&comparison.tracks).map(|(scheme, track)| {
+        let errors = scheme.errors.map(|error| percent(scheme, error));
+        let method = scheme.method.map_or_else(String::new, |method| format!(" {method}"));
+        let substeps = scheme.substeps.map_or_else(|| "its own".into(), |count| format!("{count}{method}"));
+        let about = [strong(scheme.scheme), text(track.scheme.description())];
+        let cost = [number_as(scheme.cost_ratio, fixed(2)), text(substeps)];
         row(about.into_iter().chain(errors).chain(cost))
     });
     let mut blocks = vec![Block::Lead(lead.into()), table(columns, rows.collect())];

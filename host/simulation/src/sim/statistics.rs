@@ -33,7 +33,7 @@ pub struct MeshSums {
 pub struct MeshStatistics {
     /// Share of time on the drive side [-].
     pub drive_side_share: f64,
-    /// Share of time with teeth parted [-].
+    /// Share of time with teeth separated [-].
     pub separated_share: f64,
     /// Share of time on the back side [-].
     pub back_side_share: f64,
@@ -193,7 +193,7 @@ fn hermite(values: [f64; 2], slopes: [f64; 2], width: f64, part: f64) -> (f64, f
 mod tests {
     use super::*;
 
-    /// Statistics of a wave with 50 ticks a mesh period, with the teeth parted below zero.
+    /// Statistics of a wave with 50 ticks a mesh period, with the teeth separated below zero.
     fn gathered(wave: impl Fn(f64) -> (f64, f64)) -> Statistics {
         let mut statistics = Statistics::default();
         for tick in 0..20_000 {

@@ -122,7 +122,7 @@ impl SimulationSummary {
         }
     }
 
-    /// Share of time with teeth parted, mean over meshes.
+    /// Share of time with teeth separated, mean over meshes.
     pub fn separated_share(&self) -> f64 {
         let count = self.meshes.len().max(1) as f64;
         self.meshes.iter().map(|mesh| mesh.figures.separated_share).sum::<f64>() / count

@@ -35,11 +35,11 @@ impl SweepFolder {
         // Foreign files are reported before another sweep: a sweep needs a folder of its own.
         let foreign = foreign_files(path)?;
         // Checked after the listing, since this file is always created before a journal.
-        let there = path.join(MANIFEST).exists();
+        let has_manifest = path.join(MANIFEST).exists();
         if !foreign.is_empty() {
-            return Err(foreign_files_error(path, &foreign, there));
+            return Err(foreign_files_error(path, &foreign, has_manifest));
         }
-        if there {
+        if has_manifest {
             let other = Manifest::read(&path.join(MANIFEST))?;
             if let Some(difference) = manifest.difference(&other) {
                 let message = format!("{} holds another sweep: {difference}", path.display());
@@ -49,7 +49,7 @@ impl SweepFolder {
             }
         }
         let folder = Folder::prepare_beside_others(path, "sweep", &manifest.joint, &[RESULT, REPORT])?;
-        if !there {
+        if !has_manifest {
             write_text(&path.join(MANIFEST), &manifest.text()?)?;
         }
         Ok(Self { folder })

@@ -25,7 +25,7 @@ pub enum Metric {
     RingDeflectionPeakToPeakUm,
     /// RMS of the ring-planet deflection about its mean, largest over all planets [um]
     RingDeflectionRmsUm,
-    /// Share of time with teeth parted, mean over all meshes
+    /// Share of time with teeth separated, mean over all meshes
     SeparatedShare,
     /// Share of time on the back side, mean over all meshes
     BackSideShare,

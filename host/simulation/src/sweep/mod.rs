@@ -100,19 +100,19 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let todo: Vec<u64> =
         (0..grid.points).filter(|point| arguments.shard.contains(*point) && !done.contains_key(point)).collect();
     if !done.is_empty() {
-        output::remark(&format!("going on: {} of {} points are in {}", done.len(), grid.points, path.display()));
+        output::remark(&format!("continuing: {} of {} points are in {}", done.len(), grid.points, path.display()));
     }
     progress.run("sweeping", todo.len() as u32);
     let work =
         Work { base: &base, grid: &grid, motion: &motion, scheme, metrics: &metrics, threads: arguments.threads };
     let outcome = work.run(&todo, &mut journal, progress);
     progress.clear();
-    let went = outcome?;
-    if let Some(remark) = &went.remark {
-        output::remark(&format!("{} points were refused; the first: {remark}", went.refused));
+    let result = outcome?;
+    if let Some(remark) = &result.remark {
+        output::remark(&format!("{} points were refused; the first: {remark}", result.refused));
     }
-    if went.finished < todo.len() {
-        let left = todo.len() - went.finished;
+    if result.finished < todo.len() {
+        let left = todo.len() - result.finished;
         return Err(Failure::interrupted(format!("stopped by the user: {left} of {} points are left", grid.points))
             .with_help(format!(
                 "all others are kept in {}; run this command to continue:\n{}",

@@ -113,7 +113,7 @@ fn strips(table: &SweepTable<'_>, axis: &NumberedAxis<'_>, (low, high): (f64, f6
 /// Maps over two axes, one for every value of the others.
 fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> MetricPictures {
     let metric = table.metrics[column];
-    let scale = Scale::of(metric, &table.values[column]);
+    let scale = Scale::new(metric, &table.values[column]);
     let others: Vec<usize> = (0..table.axes.len()).filter(|axis| ![across, up].contains(axis)).collect();
     let [wide, high] = [across, up].map(|axis| &table.axes[axis]);
     let group = [wide.words.len().div_ceil(MAX_CELLS[0]), high.words.len().div_ceil(MAX_CELLS[1])];
@@ -245,7 +245,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn of(metric: Metric, values: &[f64]) -> Self {
+    fn new(metric: Metric, values: &[f64]) -> Self {
         let finite = || values.iter().copied().filter(|value| value.is_finite());
         let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
         if low > high {
@@ -305,7 +305,7 @@ pub fn title(metric: Metric) -> &'static str {
         Metric::SunDeflectionRmsUm => "Sun–planet deflection, RMS about its mean",
         Metric::RingDeflectionPeakToPeakUm => "Ring–planet deflection, peak to peak",
         Metric::RingDeflectionRmsUm => "Ring–planet deflection, RMS about its mean",
-        Metric::SeparatedShare => "Share of time with teeth parted",
+        Metric::SeparatedShare => "Share of time with teeth separated",
         Metric::BackSideShare => "Share of time on the back side",
         Metric::ImpactsPerS => "Landings of all meshes in a second",
         Metric::PeakForceN => "Greatest mesh force",
@@ -345,19 +345,19 @@ mod tests {
     #[test]
     fn classes_cover_the_range() {
         for values in [vec![3.0, 11.0, 5.5], vec![1e-3, 1.0, 10.0], vec![-2.0, 6.0, 0.0]] {
-            let scale = Scale::of(Metric::PeakForceN, &values);
+            let scale = Scale::new(Metric::PeakForceN, &values);
             assert_eq!(scale.classes(), CLASSES.len());
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             assert_eq!([scale.class(low), scale.class(high)], [0, CLASSES.len() - 1]);
         }
         // Over many decades the classes are ratios.
-        assert_eq!(Scale::of(Metric::PeakForceN, &[1e-3, 1.0, 10.0]).class(1.0), 6);
+        assert_eq!(Scale::new(Metric::PeakForceN, &[1e-3, 1.0, 10.0]).class(1.0), 6);
     }
 
     #[test]
     fn few_integers_get_own_classes() {
-        let scale = Scale::of(Metric::Period, &[0.0, 3.0, 1.0, 3.0, f64::NAN]);
+        let scale = Scale::new(Metric::Period, &[0.0, 3.0, 1.0, 3.0, f64::NAN]);
         assert_eq!((0..scale.classes()).map(|class| scale.label(class)).collect::<Vec<_>>(), ["0", "1", "3"]);
         assert_eq!([scale.ink(0), scale.ink(2)], [CLASSES[0], CLASSES[7]]);
     }

@@ -44,7 +44,7 @@ pub struct SweepTable<'g> {
 }
 
 impl<'g> NumberedAxis<'g> {
-    fn of(key: &'g str, words: &'g [String], stride: u64) -> Self {
+    fn new(key: &'g str, words: &'g [String], stride: u64) -> Self {
         let numbers: Option<Vec<f64>> =
             words.iter().map(|word| word.parse::<f64>().ok().filter(|value| value.is_finite())).collect();
         let in_order = |values: &Vec<f64>| {
@@ -89,7 +89,7 @@ impl<'g> SweepTable<'g> {
         let mut stride = grid.points;
         let axes = grid.axes.iter().map(|axis| {
             stride /= axis.values.len() as u64;
-            NumberedAxis::of(&axis.key, &axis.values, stride)
+            NumberedAxis::new(&axis.key, &axis.values, stride)
         });
         let axes = axes.collect();
         let mut status = Vec::with_capacity(points.len());
@@ -141,11 +141,11 @@ mod tests {
     #[test]
     fn edges_lie_halfway_between_values() {
         let words: Vec<String> = ["30", "10", "0"].map(str::to_owned).to_vec();
-        let axis = NumberedAxis::of("a", &words, 1);
+        let axis = NumberedAxis::new("a", &words, 1);
         assert_eq!(axis.edges(), [-5.0, 5.0, 20.0, 40.0]);
         assert_eq!([0, 1, 2].map(|place| axis.cell(place)), [2, 1, 0]);
         let words: Vec<String> = ["sharp", "tanh"].map(str::to_owned).to_vec();
-        let axis = NumberedAxis::of("a", &words, 1);
+        let axis = NumberedAxis::new("a", &words, 1);
         assert!(axis.by_index);
         assert_eq!(axis.edges(), [0.5, 1.5, 2.5]);
     }

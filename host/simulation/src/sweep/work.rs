@@ -89,7 +89,7 @@ fn store(
     journal: &mut Journal,
     progress: &Progress,
 ) -> Outcome<WorkOutcome> {
-    let mut went = WorkOutcome::default();
+    let mut outcome = WorkOutcome::default();
     while let Ok(first) = receiver.recv() {
         let mut lines = String::new();
         let mut count = 0;
@@ -98,18 +98,18 @@ fn store(
                 std::iter::once(result.status).chain(result.values.iter().map(String::as_str)).collect();
             lines += &journal::line(point, &fields.join(","));
             count += 1;
-            went.refused += usize::from(result.remark.is_some());
-            went.remark = went.remark.or(result.remark);
+            outcome.refused += usize::from(result.remark.is_some());
+            outcome.remark = outcome.remark.or(result.remark);
         }
         journal.append(&lines).map_err(|failure| {
             let kept = format!(
                 "{} points of this run are kept: free some space, then run the same command again",
-                went.finished
+                outcome.finished
             );
             failure.with_help(kept)
         })?;
-        went.finished += count;
-        progress.set_position(went.finished as u32);
+        outcome.finished += count;
+        progress.set_position(outcome.finished as u32);
     }
-    Ok(went)
+    Ok(outcome)
 }

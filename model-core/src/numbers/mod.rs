@@ -1,8 +1,9 @@
 //! Arithmetic with equal bits on every host and board: scalar trait of the core, sine and cosine of phases, clamp and dead
-//! band, digests, random words, declaration of thresholds.
+//! band, integer division, digests, random words, declaration of thresholds.
 
 pub(crate) mod arithmetic;
 pub mod digest;
+pub(crate) mod integers;
 pub mod phase;
 pub mod random;
 mod real;

@@ -1,6 +1,7 @@
 //! Design of the gear tables (offline, f64) from parameters. `dynamics` is eq. 19 and (S4), `hamiltonian` eq. 20,
-//! `exponential` the precise integration; `flow_tables` splits the flow into in-phase motion and deviations. `tables`
-//! assembles all tables, `step_size` chooses the sub-steps, `certificate` states their cost and stability.
+//! `exponential` the precise integration, `kalman` the steady-state filter of any linear system; `flow_tables` splits
+//! the flow into in-phase motion and deviations. `tables` assembles all tables, `step_size` chooses the sub-steps,
+//! `certificate` states their cost and stability.
 
 mod certificate;
 mod cost;
@@ -10,6 +11,7 @@ mod error;
 pub mod exponential;
 mod flow_tables;
 pub mod hamiltonian;
+pub(crate) mod kalman;
 pub mod modes;
 mod processor;
 mod source;

@@ -4,9 +4,9 @@
 use core::f64::consts::TAU;
 
 use super::body::Body;
-use super::filter::Filter;
 use super::settings::ObserverSettings;
 use super::thresholds::COGGING_DESIGN;
+use crate::gears::design::kalman::Filter;
 use crate::numbers::Real;
 use crate::observer::tables::CoggingTable;
 

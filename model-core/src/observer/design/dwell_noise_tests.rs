@@ -11,8 +11,7 @@ fn uncertainty() -> Uncertainty<f64> {
     let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
     let tables: ObserverTables<f64> =
         design_observer(&q1.parameters, &observer_settings(&q1.surroundings)).expect("tables");
-    let (mut least_squares, mut uncertainty) =
-        (LeastSquares::<_, MAPPED>::uninitialized(), Uncertainty::uninitialized());
+    let (mut least_squares, mut uncertainty) = (LeastSquares::<_, MAPPED>::UNINITIALIZED, Uncertainty::uninitialized());
     least_squares.reset(&tables.learner);
     uncertainty.reset(&tables, &least_squares);
     uncertainty

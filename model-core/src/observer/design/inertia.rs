@@ -2,9 +2,9 @@
 //! torques.
 
 use super::body::Body;
-use super::filter::Filter;
 use super::settings::ObserverSettings;
 use super::thresholds::{INERTIA_DESIGN, LEARNING_DESIGN};
+use crate::gears::design::kalman::Filter;
 use crate::numbers::Real;
 use crate::observer::tables::InertiaTable;
 

@@ -4,7 +4,6 @@ pub(crate) mod body;
 mod cogging;
 #[cfg(test)]
 mod dwell_noise_tests;
-mod filter;
 #[cfg(test)]
 mod gap_variation_tests;
 mod inertia;

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::body::Body;
-use super::filter::{Filter, System};
 use super::settings::ObserverSettings;
 use super::thresholds::{FILTER_DESIGN, TORQUE_DESIGN};
 use crate::gears::design::exponential::flow;
+use crate::gears::design::kalman::{Filter, System};
 use crate::numbers::Real;
 use crate::observer::tables::{CurrentTable, DriveTable};
 

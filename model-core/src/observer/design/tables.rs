@@ -7,7 +7,6 @@
 use core::f64::consts::TAU;
 
 use super::body::Body;
-use super::filter::Filter;
 use super::settings::{EncoderSettings, ObserverSettings};
 use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
 use super::thresholds::{
@@ -15,6 +14,7 @@ use super::thresholds::{
 };
 use super::{cogging, inertia, integers};
 use crate::gears::Kinematics;
+use crate::gears::design::kalman::Filter;
 use crate::gears::design::{DesignError, validate};
 use crate::numbers::{Real, digest};
 use crate::observer::tables::{

@@ -18,11 +18,12 @@ use torque_response::TorqueResponseCheck;
 
 use super::estimates::{MotorFault, OutputFault, Source};
 use super::filters::Filters;
-use super::identification::mesh_measurement::{MeshMeasurement, saturating_difference};
+use super::identification::mesh_measurement::MeshMeasurement;
 use super::identification::regressors::{self, ContactSample};
 use super::identification::{IntervalResult, ParameterEstimator};
 use super::sensors::{SensorReadings, Sensors};
 use crate::numbers::Real;
+use crate::numbers::integers::saturating_real;
 use crate::observer::tables::ObserverTables;
 
 pub use output_faults::{LastMotion, ReadingStatus};
@@ -61,10 +62,10 @@ impl<T: Real> Health<T> {
     pub fn new(has_output: bool) -> Self {
         Self {
             source: Source::MotorOnly(if has_output { OutputFault::Unheard } else { OutputFault::Absent }),
-            motor: MotorFaultDetector::new(),
-            output: OutputFaultDetector::new(),
-            output_recovery: OutputRecovery::new(),
-            response: TorqueResponseCheck::new(),
+            motor: MotorFaultDetector::default(),
+            output: OutputFaultDetector::default(),
+            output_recovery: OutputRecovery::default(),
+            response: TorqueResponseCheck::default(),
             unseen_link: LinkWithoutEncoder::default(),
             load_torques: [T::ZERO; 2],
             intervals_since_store: 0,
@@ -226,7 +227,7 @@ impl<T: Real> Health<T> {
         let motor_phase = sensors.counts.motor.phase(&tables.counts.motor);
         let output_phase = sensors.counts.output.phase(&tables.counts.output);
         let open_gap = regressors::open_gap(filters.load.speed, motor_phase, Some(output_phase));
-        let raw_deflection = tables.counts.length * saturating_difference(sensors.counts.difference)
+        let raw_deflection = tables.counts.length * saturating_real(sensors.counts.difference)
             + tables.levers.sun * filters.drive.angle_residual;
         let tolerance = tables.supervisor.margin + T::TWO * estimator.uncertainty.edge_deviation;
         let force = interval.force();

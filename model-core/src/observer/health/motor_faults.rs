@@ -27,7 +27,7 @@ use crate::observer::sensors::latency::SampleAge;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 
 /// Fault checks of the motor encoder.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct MotorFaultDetector<T: Real> {
     plausibility: Plausibility,
     /// Reason for the exclusion.
@@ -130,20 +130,6 @@ fn saturating_whole<T: Real>(size: T) -> i32 {
 }
 
 impl<T: Real> MotorFaultDetector<T> {
-    pub fn new() -> Self {
-        Self {
-            plausibility: Plausibility::new(),
-            fault: None,
-            standstill_periods: 0,
-            free_speed: T::ZERO,
-            free_travel: T::ZERO,
-            standstill_deflection: T::ZERO,
-            standstill_force: T::ZERO,
-            plausible_for: 0,
-            has_moved: false,
-        }
-    }
-
     /// Reason for the exclusion of the encoder.
     pub fn fault(&self) -> Option<MotorFault> {
         self.fault
@@ -160,7 +146,7 @@ impl<T: Real> MotorFaultDetector<T> {
 
     /// Readmits the encoder.
     pub fn readmit(&mut self) {
-        *self = Self { plausibility: self.plausibility, ..Self::new() };
+        *self = Self { plausibility: self.plausibility, ..Self::default() };
     }
 
     /// Speed of the motor, 0 if unknown [counts per period].
@@ -338,7 +324,7 @@ mod tests {
 
     /// Free travel after ten periods at a standstill under a torque.
     fn free_travel(torque: f32) -> f32 {
-        let mut detector = MotorFaultDetector::new();
+        let mut detector = MotorFaultDetector::default();
         (0..10).for_each(|_| detector.integrate_free_motion(&supervisor(), &under(torque)));
         detector.free_travel
     }
@@ -358,7 +344,7 @@ mod tests {
 
     #[test]
     fn friction_stops_free_motor() {
-        let mut detector = MotorFaultDetector::new();
+        let mut detector = MotorFaultDetector::default();
         detector.integrate_free_motion(&supervisor(), &under(1.1));
         assert_eq!(detector.free_speed, 1.0);
         (0..20).for_each(|_| detector.integrate_free_motion(&supervisor(), &under(0.0)));
@@ -367,7 +353,7 @@ mod tests {
 
     #[test]
     fn standstill_counts_from_limit() {
-        let (mut detector, table) = (MotorFaultDetector::<f32>::new(), supervisor());
+        let (mut detector, table) = (MotorFaultDetector::<f32>::default(), supervisor());
         for _ in 1..table.motor_unmoved_after {
             detector.integrate_free_motion(&table, &under(0.0));
         }
@@ -378,7 +364,7 @@ mod tests {
 
     #[test]
     fn readmission_clears_fault() {
-        let mut detector = MotorFaultDetector::<f32>::new();
+        let mut detector = MotorFaultDetector::<f32>::default();
         assert_eq!(detector.exclude(MotorFault::Jumped), MotorReadingStatus::Excluded);
         assert_eq!((detector.fault(), detector.has_moved()), (Some(MotorFault::Jumped), true));
         detector.readmit();

@@ -33,7 +33,7 @@ use crate::observer::sensors::counts::CountChange;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 
 /// Fault checks of the output encoder.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct OutputFaultDetector<T: Real> {
     plausibility: Plausibility,
     silent_periods: u16,
@@ -106,19 +106,6 @@ enum DeflectionRange {
 }
 
 impl<T: Real> OutputFaultDetector<T> {
-    pub fn new() -> Self {
-        Self {
-            plausibility: Plausibility::new(),
-            silent_periods: 0,
-            standstill_periods: 0,
-            out_of_range_for: 0,
-            deflection: T::ZERO,
-            has_jumped: false,
-            standstill_deflection: T::ZERO,
-            deflection_unknown: false,
-        }
-    }
-
     /// Starts the time out of range anew after an exclusion.
     pub fn reset_timer(&mut self) {
         self.out_of_range_for = 0;

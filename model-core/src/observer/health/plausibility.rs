@@ -66,11 +66,13 @@ pub struct Plausibility {
     standstill_readings: u8,
 }
 
-impl Plausibility {
-    pub fn new() -> Self {
+impl Default for Plausibility {
+    fn default() -> Self {
         Self { rate: 0, noise: 0, jump_distance: 0, readings_since_jump: SPEED_UNKNOWN, standstill_readings: 0 }
     }
+}
 
+impl Plausibility {
     /// Handles a reading after an irregular interval: motion ends a standstill; a long interval (`is_long`) resets the
     /// speed.
     #[cold]
@@ -84,7 +86,7 @@ impl Plausibility {
 
     /// Resets the speed and keeps the noise.
     pub fn reset_speed(&mut self) {
-        *self = Self { noise: self.noise, ..Self::new() };
+        *self = Self { noise: self.noise, ..Self::default() };
     }
 
     /// Speed of the shaft [parts of a count per period].
@@ -137,7 +139,7 @@ impl Plausibility {
         if self.readings_since_jump == SPEED_UNKNOWN {
             // A single reading is rounded by up to a count: the slowest speed that explains it is used.
             let rate = by - by.clamp(-PARTS_PER_COUNT, PARTS_PER_COUNT);
-            *self = Self { rate, noise: self.noise, readings_since_jump: 0, ..Self::new() };
+            *self = Self { rate, noise: self.noise, readings_since_jump: 0, ..Self::default() };
             return PlausibilityResult::Plausible;
         }
         self.jump_distance =
@@ -244,7 +246,7 @@ mod tests {
 
     /// Shaft that turns steadily by `by` counts per period.
     fn steady(by: i32) -> Plausibility {
-        let mut plausibility = Plausibility::new();
+        let mut plausibility = Plausibility::default();
         for _ in 0..100 {
             assert_eq!(plausibility.check(&limits(), by), PlausibilityResult::Plausible);
         }
@@ -253,11 +255,11 @@ mod tests {
 
     #[test]
     fn first_reading_gives_slowest_speed() {
-        let mut plausibility = Plausibility::new();
+        let mut plausibility = Plausibility::default();
         assert_eq!(plausibility.speed::<f32>(), None);
         plausibility.check(&limits(), 20);
         assert_eq!(plausibility.speed::<f32>(), Some(19.0));
-        let mut backward = Plausibility::new();
+        let mut backward = Plausibility::default();
         backward.check(&limits(), -20);
         assert_eq!(backward.speed::<f32>(), Some(-19.0));
     }
@@ -282,7 +284,7 @@ mod tests {
 
     #[test]
     fn slow_standstill_is_plausible() {
-        let mut plausibility = Plausibility::new();
+        let mut plausibility = Plausibility::default();
         plausibility.check(&limits(), 0);
         for reading in 0..200 {
             assert_eq!(plausibility.check(&limits(), i32::from(reading % 4 == 0)), PlausibilityResult::Plausible);

@@ -28,7 +28,7 @@ pub struct OutputEvidence<T: Real> {
 }
 
 /// Readmission of the output encoder: agreement so far.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct OutputRecovery<T: Real> {
     /// Learning intervals in motion with agreement.
     agreeing_intervals: u16,
@@ -41,13 +41,9 @@ pub struct OutputRecovery<T: Real> {
 }
 
 impl<T: Real> OutputRecovery<T> {
-    pub fn new() -> Self {
-        Self { agreeing_intervals: 0, steady_intervals: 0, steady_offsets: [T::ZERO; 2], position: 0 }
-    }
-
     /// Starts anew after an exclusion.
     pub fn reset(&mut self) {
-        *self = Self { position: self.position, ..Self::new() };
+        *self = Self { position: self.position, ..Self::default() };
     }
 
     /// Judges one learning interval.
@@ -109,20 +105,20 @@ mod tests {
 
     #[test]
     fn agreement_in_motion_readmits() {
-        let mut recovery = OutputRecovery::new();
+        let mut recovery = OutputRecovery::default();
         assert_eq!(steps(&mut recovery, 9e-6, INTERVALS - 1, TRAVEL), None);
         assert_eq!(steps(&mut recovery, 9e-6, 1, TRAVEL), Some(Readmission::SameOffset));
     }
 
     #[test]
     fn stationary_encoder_is_not_readmitted() {
-        let mut recovery = OutputRecovery::new();
+        let mut recovery = OutputRecovery::default();
         assert_eq!(steps(&mut recovery, 0.0, 100, TRAVEL - 1), None);
     }
 
     #[test]
     fn constant_offset_readmits_later() {
-        let mut recovery = OutputRecovery::new();
+        let mut recovery = OutputRecovery::default();
         let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
         assert_eq!(steps(&mut recovery, 50e-6, needed - 1, TRAVEL), None);
         assert_eq!(steps(&mut recovery, 50e-6, 1, TRAVEL), Some(Readmission::NewOffset));
@@ -130,7 +126,7 @@ mod tests {
 
     #[test]
     fn drifting_offset_starts_anew() {
-        let mut recovery = OutputRecovery::new();
+        let mut recovery = OutputRecovery::default();
         let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
         steps(&mut recovery, 50e-6, needed - 1, TRAVEL);
         assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), None);
@@ -140,7 +136,7 @@ mod tests {
 
     #[test]
     fn disagreement_clears_agreement() {
-        let mut recovery = OutputRecovery::new();
+        let mut recovery = OutputRecovery::default();
         steps(&mut recovery, 0.0, INTERVALS - 1, TRAVEL);
         steps(&mut recovery, 11e-6, 1, TRAVEL);
         assert_eq!(steps(&mut recovery, 0.0, INTERVALS - 1, TRAVEL), None);
@@ -148,13 +144,13 @@ mod tests {
 
     #[test]
     fn offset_of_nan_is_not_readmitted() {
-        let mut recovery = OutputRecovery::new();
+        let mut recovery = OutputRecovery::default();
         assert_eq!(steps(&mut recovery, f32::NAN, INTERVALS, TRAVEL), None);
     }
 
     #[test]
     fn open_gap_needs_no_contact() {
-        let mut recovery = OutputRecovery::<f32>::new();
+        let mut recovery = OutputRecovery::<f32>::default();
         let mut result = None;
         for interval in 1..=u32::from(INTERVALS) {
             let position = Some(interval * TRAVEL);

@@ -30,7 +30,7 @@ const PATTERN: u32 = 0b00_0011_0001_1110_0111;
 const PATTERN_BLOCKS: u8 = 18;
 
 /// Votes and their evidence.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct TorqueResponseCheck<T: Real> {
     response: TorqueResponse,
     /// Votes for the right sign less votes for the wrong sign.
@@ -56,21 +56,6 @@ pub struct TorqueResponseCheck<T: Real> {
 impl<T: Real> TorqueResponseCheck<T> {
     const LIMITS: TorqueResponseThresholds<T> = TorqueResponseThresholds::TUNED;
 
-    pub fn new() -> Self {
-        Self {
-            response: TorqueResponse::Unknown,
-            votes: 0,
-            against_torque: 0,
-            test_block: 0,
-            periods: 0,
-            torque: T::ZERO,
-            turned: T::ZERO,
-            last_block: [T::ZERO; 2],
-            pairs: [[T::ZERO; 2]; APART],
-            undisturbed_blocks: 0,
-        }
-    }
-
     /// Result so far.
     pub fn response(&self) -> TorqueResponse {
         self.response
@@ -80,7 +65,7 @@ impl<T: Real> TorqueResponseCheck<T> {
     #[cold]
     pub fn interrupt(&mut self) {
         let response = if self.is_decided() { self.response } else { TorqueResponse::Unknown };
-        *self = Self { response, votes: self.votes, ..Self::new() };
+        *self = Self { response, votes: self.votes, ..Self::default() };
     }
 
     /// Returns true once the check has ended.
@@ -201,14 +186,14 @@ mod tests {
 
     #[test]
     fn right_sign_is_found() {
-        let mut check = TorqueResponseCheck::new();
+        let mut check = TorqueResponseCheck::default();
         drive(&mut check, 1.0, 40, swinging);
         assert_eq!(check.response(), TorqueResponse::Right);
     }
 
     #[test]
     fn right_sign_needs_votes() {
-        let mut check = TorqueResponseCheck::new();
+        let mut check = TorqueResponseCheck::default();
         let votes = TorqueResponseThresholds::<f32>::TUNED.right_votes;
         check.votes = votes - 2;
         check.vote(&table(), 1.0, 1.0);
@@ -221,21 +206,21 @@ mod tests {
 
     #[test]
     fn reversed_sign_is_found_under_constant_torque() {
-        let mut check = TorqueResponseCheck::new();
+        let mut check = TorqueResponseCheck::default();
         drive(&mut check, -1.0, 60, |_| 1.0);
         assert_eq!(check.response(), TorqueResponse::Reversed);
     }
 
     #[test]
     fn small_torque_does_not_vote() {
-        let mut check = TorqueResponseCheck::new();
+        let mut check = TorqueResponseCheck::default();
         drive(&mut check, 1.0, 60, |block| 0.24 * swinging(block));
         assert_eq!((check.response(), check.votes), (TorqueResponse::Unknown, 0));
     }
 
     #[test]
     fn weak_response_does_not_vote() {
-        let mut check = TorqueResponseCheck::new();
+        let mut check = TorqueResponseCheck::default();
         check.vote(&table(), 1.0, 0.16);
         check.vote(&table(), 1.0, -0.16);
         assert_eq!(check.votes, 0);
@@ -245,7 +230,7 @@ mod tests {
 
     #[test]
     fn tooth_impact_pauses_check() {
-        let mut check = TorqueResponseCheck::new();
+        let mut check = TorqueResponseCheck::default();
         drive(&mut check, 1.0, 6, swinging);
         assert_eq!(check.undisturbed_blocks, 4);
         for _ in 0..BLOCK {
@@ -256,7 +241,7 @@ mod tests {
 
     #[test]
     fn interrupt_keeps_votes_and_decision() {
-        let mut check = TorqueResponseCheck::<f32>::new();
+        let mut check = TorqueResponseCheck::<f32>::default();
         check.votes = 3;
         check.response = TorqueResponse::Tested;
         check.interrupt();

@@ -72,7 +72,7 @@ impl<T: Real, const P: usize> Batch<T, P> {
     const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.
-    const NEW: Self = Self {
+    pub const NEW: Self = Self {
         intervals: 0,
         contact_intervals: 0,
         batches: [0; 2],
@@ -82,15 +82,10 @@ impl<T: Real, const P: usize> Batch<T, P> {
         forces: [ForceStatistics::NONE; 2],
     };
 
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self::NEW
-    }
-
     /// Begins a new batch on a flank.
     fn begin_on(&mut self, flank: Option<Flank>) {
         let contact = ContactSample { flank, ..ContactSample::OPEN };
-        *self = Self { batches: self.batches, forces: self.forces, contact, ..Self::new() };
+        *self = Self { batches: self.batches, forces: self.forces, contact, ..Self::NEW };
     }
 
     /// Multiplies all sums by a factor, which turns sums of fewer intervals into means.
@@ -195,7 +190,7 @@ mod tests {
 
     #[test]
     fn full_batch_is_mean() {
-        let mut batch = Batch::new();
+        let mut batch = Batch::NEW;
         assert!(!fill(&mut batch, 7));
         assert!(add(&mut batch, Dwell::On(DRIVE), 12.0, 10.0));
         let (regressors, deflection) = batch.measurement();
@@ -205,7 +200,7 @@ mod tests {
 
     #[test]
     fn early_end_gives_mean_with_less_weight() {
-        let mut batch = Batch::new();
+        let mut batch = Batch::NEW;
         fill(&mut batch, 2);
         assert!(add(&mut batch, Dwell::No, 0.0, 0.0));
         let (regressors, deflection) = batch.measurement();
@@ -216,7 +211,7 @@ mod tests {
 
     #[test]
     fn contact_below_shortest_is_discarded() {
-        let mut batch = Batch::new();
+        let mut batch = Batch::NEW;
         fill(&mut batch, 1);
         assert!(!add(&mut batch, Dwell::No, 0.0, 0.0));
         assert_eq!(batch.flank(), None);
@@ -224,7 +219,7 @@ mod tests {
 
     #[test]
     fn other_flank_begins_new_batch() {
-        let mut batch = Batch::new();
+        let mut batch = Batch::NEW;
         fill(&mut batch, 7);
         assert!(!add(&mut batch, Dwell::On(Some(Flank::Back)), -4.0, -10.0));
         assert_eq!(batch.flank(), Some(Flank::Back));
@@ -234,7 +229,7 @@ mod tests {
 
     #[test]
     fn unknown_flank_continues_batch() {
-        let mut batch = Batch::new();
+        let mut batch = Batch::NEW;
         fill(&mut batch, 4);
         let full = (0..4).fold(false, |_, _| add(&mut batch, Dwell::On(None), 4.0, 10.0));
         assert!(full);

@@ -26,7 +26,7 @@ pub struct LastDwell<T: Real, const P: usize> {
 
 impl<T: Real, const P: usize> LastDwell<T, P> {
     /// A constant: the compiler writes it in place instead of copying from the stack.
-    const NEW: Self = Self {
+    pub const NEW: Self = Self {
         regressors: [T::ZERO; P],
         flank: None,
         deflection: T::ZERO,
@@ -34,11 +34,6 @@ impl<T: Real, const P: usize> LastDwell<T, P> {
         is_stored: false,
         is_continuous: false,
     };
-
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self::NEW
-    }
 
     /// Stores a dwell.
     pub fn store(&mut self, regressors: &Regressors<T, P>, deflection: T, flank: Option<Flank>) {

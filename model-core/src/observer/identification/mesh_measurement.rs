@@ -32,16 +32,3 @@ impl<T: Real> MeshMeasurement<T> {
         self.deflection - self.flank_shift
     }
 }
-
-/// Converts a difference of counts, which teeth keep small, and saturates: conversion of wide integers is slow without
-/// hardware.
-pub fn saturating_difference<T: Real>(difference: i64) -> T {
-    let narrow = difference as i32;
-    T::from_i32(if i64::from(narrow) == difference {
-        narrow
-    } else if difference < 0 {
-        i32::MIN
-    } else {
-        i32::MAX
-    })
-}

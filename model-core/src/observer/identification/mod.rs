@@ -46,7 +46,7 @@ use inertia::LinkInertia;
 use interval::{Dwell, Interval, IntervalMean, Task, is_settled};
 use last_dwell::LastDwell;
 use least_squares::{Innovation, LeastSquares};
-use mesh_measurement::{MeshMeasurement, saturating_difference};
+use mesh_measurement::MeshMeasurement;
 use position_errors::PositionErrors;
 use regressors::{COMPLIANCE, ContactSample, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, TRANSMISSION_ERROR};
 use thresholds::EstimatorThresholds;
@@ -56,6 +56,7 @@ use uncertainty::Uncertainty;
 
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::integers::saturating_real;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::contact::gap_position::GapPosition;
 use crate::observer::filters::Filters;
@@ -141,13 +142,13 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
             bias: TorqueBias::new(&tables.contact),
             inertia: LinkInertia::new(&tables.inertia),
             cogging: Cogging::new(&tables.cogging),
-            errors: PositionErrors::new(),
+            errors: PositionErrors::NEW,
             uncertainty: Uncertainty::uninitialized(),
-            least_squares: LeastSquares::uninitialized(),
+            least_squares: LeastSquares::UNINITIALIZED,
             interval: Interval::new(),
-            travel: TravelDetector::new(),
-            batch: Batch::new(),
-            last_dwell: LastDwell::new(),
+            travel: TravelDetector::NEW,
+            batch: Batch::NEW,
+            last_dwell: LastDwell::NEW,
             consistency: Consistency::default(),
             gap_variation: GapVariation::new(),
             probation: 0,
@@ -191,8 +192,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         let (drive, load) = (&filters.drive, &filters.load);
         let (_, difference) = sensors.counts.output_in_use();
         let flank_shift = self.transmission_error(&self.errors.mesh);
-        let raw_deflection = tables.counts.length * saturating_difference(difference)
-            + levers.sun * drive.angle_residual
+        let raw_deflection = tables.counts.length * saturating_real(difference) + levers.sun * drive.angle_residual
             - levers.output * load.angle_residual;
         let motor_force = drive.disturbance_torque * levers.per_sun;
         let direction = TorqueBias::direction(&tables.contact, drive.speed);
@@ -232,7 +232,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
     pub fn reset_variances(&mut self, tables: &ObserverTables<T>) {
         self.least_squares.reset_covariance();
         self.pending_innovation = None;
-        self.last_dwell = LastDwell::new();
+        self.last_dwell = LastDwell::NEW;
         self.update_uncertainty(tables, true);
     }
 
@@ -264,9 +264,9 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
     /// Discards the open interval and the last dwell: readings have broken off.
     pub fn discard_interval(&mut self) {
         self.interval = Interval::new();
-        self.travel = TravelDetector::new();
-        self.batch = Batch::new();
-        self.last_dwell = LastDwell::new();
+        self.travel = TravelDetector::NEW;
+        self.batch = Batch::NEW;
+        self.last_dwell = LastDwell::NEW;
         self.pending_innovation = None;
     }
 

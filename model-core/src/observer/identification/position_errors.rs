@@ -27,7 +27,7 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
     const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.
-    const NEW: Self = Self {
+    pub const NEW: Self = Self {
         open_gap: [T::ZERO; P],
         mid_mesh: [T::ZERO, T::ONE],
         mesh: [T::ZERO, T::ONE],
@@ -35,11 +35,6 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         slopes: [T::ZERO; 2],
         turned: T::ZERO,
     };
-
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self::NEW
-    }
 
     /// Advances the errors by the turn of both shafts [rad]; `meshes` is the number of mesh periods per output turn.
     /// Returns true once the turn is too far for slopes.
@@ -106,7 +101,7 @@ mod tests {
 
     /// Least squares whose motor map is 1 um sin, at a motor phase of zero.
     fn mapped() -> (LeastSquares<f32, MAPPED>, Regressors<f32, MAPPED>) {
-        let mut least_squares = LeastSquares::uninitialized();
+        let mut least_squares = LeastSquares::UNINITIALIZED;
         least_squares.reset(&learner());
         least_squares.values[PLAIN] = 1e-6;
         let mut open_gap = [0.0; MAPPED];
@@ -116,7 +111,7 @@ mod tests {
 
     #[test]
     fn turn_beyond_limit_needs_exact_errors() {
-        let mut errors = PositionErrors::<f32, MAPPED>::new();
+        let mut errors = PositionErrors::<f32, MAPPED>::NEW;
         assert!(!errors.advance(0.2, 0.0, 90.0));
         assert!(!errors.advance(-0.04, 0.0, 90.0));
         assert!(errors.advance(0.0, 2e-4, 90.0), "a mesh phase of 0.018 rad more");
@@ -125,7 +120,7 @@ mod tests {
     #[test]
     fn slope_follows_map() {
         let (least_squares, open_gap) = mapped();
-        let mut errors = PositionErrors::new();
+        let mut errors = PositionErrors::NEW;
         errors.set_exact(&least_squares, &open_gap, [0.0, 1.0]);
         errors.advance(0.1, 0.0, 90.0);
         assert!((errors.errors[0] - 0.1e-6).abs() < 1e-12, "{:?}", errors.errors);
@@ -135,7 +130,7 @@ mod tests {
 
     #[test]
     fn mesh_phase_keeps_amplitude() {
-        let mut errors = PositionErrors::<f32, MAPPED>::new();
+        let mut errors = PositionErrors::<f32, MAPPED>::NEW;
         (0..10_000).for_each(|_| _ = errors.advance(0.0, 1e-3, 90.0));
         let [sine, cosine] = errors.mesh;
         assert!((sine * sine + cosine * cosine - 1.0).abs() < 0.1);

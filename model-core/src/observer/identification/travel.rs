@@ -41,7 +41,7 @@ impl<T: Real> TravelDetector<T> {
     const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.
-    const NEW: Self = Self {
+    pub const NEW: Self = Self {
         deflections: [T::ZERO; WINDOW + 1],
         forces: [T::ZERO; WINDOW + 1],
         directions: [0; WINDOW + 1],
@@ -50,11 +50,6 @@ impl<T: Real> TravelDetector<T> {
         rest_intervals: 0,
         limit: T::ZERO,
     };
-
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self::NEW
-    }
 
     /// Judges an interval by deflection less wind-up [m], and force [N] with direction. `blur` is the deflection that
     /// unknown error maps can cause as the motor turns in an interval [m], `compliance_uncertainty` the uncertainty of
@@ -130,15 +125,20 @@ mod tests {
         travel
     }
 
+    fn fresh_steps(deflections: impl IntoIterator<Item = f32>) -> Travel<f32> {
+        let mut detector = TravelDetector::NEW;
+        steps(&mut detector, deflections)
+    }
+
     #[test]
     fn short_history_is_undecided() {
-        assert_eq!(steps(&mut TravelDetector::new(), [0.0; WINDOW]), Travel::Undecided);
-        assert_eq!(steps(&mut TravelDetector::new(), [0.0; WINDOW + 1]), Travel::AtRest(1));
+        assert_eq!(fresh_steps([0.0; WINDOW]), Travel::Undecided);
+        assert_eq!(fresh_steps([0.0; WINDOW + 1]), Travel::AtRest(1));
     }
 
     #[test]
     fn change_below_noise_is_rest() {
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW]);
         assert_eq!(steps(&mut detector, [7.9]), Travel::AtRest(1));
         assert_eq!(steps(&mut detector, [-7.9]), Travel::AtRest(2));
@@ -149,14 +149,14 @@ mod tests {
     #[test]
     fn steady_motion_is_crossing() {
         for sign in [1.0, -1.0] {
-            let travel = steps(&mut TravelDetector::new(), (0..20).map(|interval| sign * 3.0 * interval as f32));
+            let travel = fresh_steps((0..20).map(|interval| sign * 3.0 * interval as f32));
             assert_eq!(travel, Travel::Crossing(2.0, 0.5));
         }
     }
 
     #[test]
     fn jump_is_undecided() {
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW + 1]);
         assert_eq!(steps(&mut detector, [100.0; 3]), Travel::Undecided);
     }
@@ -164,36 +164,36 @@ mod tests {
     #[test]
     fn reversal_is_undecided() {
         let there_and_back = (0..5).map(|interval| 10.0 * interval as f32).chain([30.0, 25.0, 20.0, 15.0]);
-        assert_eq!(steps(&mut TravelDetector::new(), there_and_back), Travel::Undecided);
+        assert_eq!(fresh_steps(there_and_back), Travel::Undecided);
     }
 
     #[test]
     fn blur_widens_rest() {
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW]);
         assert_eq!(detector.step(&contact(), 15.9 * UM, (2.0, 0.0), UM, 0.0), Travel::AtRest(1));
     }
 
     #[test]
     fn changed_force_widens_rest() {
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW]);
         assert_eq!(detector.step(&contact(), 15.9 * UM, (10.0, 0.0), 0.0, UM), Travel::AtRest(1));
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW]);
         assert_eq!(detector.step(&contact(), 16.1 * UM, (10.0, 0.0), 0.0, UM), Travel::Undecided);
     }
 
     #[test]
     fn deflection_of_nan_is_undecided() {
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW]);
         assert_eq!(steps(&mut detector, [f32::NAN]), Travel::Undecided);
     }
 
     #[test]
     fn rest_differs_from_crossing_in_wide_gap() {
-        let mut detector = TravelDetector::new();
+        let mut detector = TravelDetector::NEW;
         steps(&mut detector, [0.0; WINDOW + 1]);
         assert!(detector.distinguishes_rest(32.1 * UM), "noise hides 8 um, a quarter of the half-gap");
         assert!(!detector.distinguishes_rest(31.9 * UM));

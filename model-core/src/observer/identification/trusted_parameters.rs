@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn restored_parameters_replace_later_ones() {
-        let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+        let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
         least_squares.reset(&learner());
         least_squares.values[HALF_GAP] = 80e-6;
         least_squares.set_relative_variance(HALF_GAP, 0.01);

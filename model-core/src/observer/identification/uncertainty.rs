@@ -22,7 +22,7 @@ use crate::observer::tables::ObserverTables;
 const PARTS: u8 = 4;
 
 /// Variances and thresholds that hold from the end of an interval until the next.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Uncertainty<T: Real> {
     /// Standard deviation of the mesh force from the motor side [N].
     pub force_deviation: T,
@@ -86,33 +86,7 @@ impl<T: Real> Uncertainty<T> {
     /// Returns an uncertainty without its tables.
     #[inline(always)]
     pub fn uninitialized() -> Self {
-        Self {
-            force_deviation: T::ZERO,
-            mean_force_deviation: T::ZERO,
-            steady_force_deviation: T::ZERO,
-            combined_deviation: T::ZERO,
-            deflection_variance: T::ZERO,
-            edge_deviation: T::ZERO,
-            wind_up_variance: [T::ZERO; 2],
-            variances: [T::ZERO; 4],
-            blur: T::ZERO,
-            near: T::ZERO,
-            position_weight: T::ZERO,
-            half_gap_is_known: false,
-            half_gap_is_usable: false,
-            stiffness: T::ZERO,
-            mesh_share: T::ZERO,
-            compliance_uncertainty: T::ZERO,
-            guessed_half_gap: T::ZERO,
-            reach: T::ZERO,
-            gap_variance: [T::ZERO; 2],
-            widest_variance: T::ZERO,
-            flanks_swap: false,
-            settled: false,
-            dwell_deviation: T::ONE,
-            half_gap_error: T::ZERO,
-            next_part: 0,
-        }
+        Self { dwell_deviation: T::ONE, ..Self::default() }
     }
 
     /// Resets to the state before any estimation.

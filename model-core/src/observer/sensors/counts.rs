@@ -10,6 +10,7 @@
 
 use super::thresholds::COUNTS;
 use crate::numbers::Real;
+use crate::numbers::integers::{floor_div, floor_mod, half, quotient};
 use crate::observer::samples::Reading;
 use crate::observer::tables::{CountTable, EncoderTable};
 
@@ -108,54 +109,6 @@ impl Counter {
     pub fn turns(&self) -> i32 {
         self.turns
     }
-}
-
-/// Quotient rounded towards zero; `None` for a divisor of zero. A 64-bit division is a library call of 700 bytes:
-/// operands that fit 32 bits are divided in hardware, other quotients have few digits here.
-#[inline(never)]
-fn quotient(units: i64, part: i64) -> Option<i64> {
-    let (left, size) = (units.unsigned_abs(), part.unsigned_abs());
-    let quotient = match (u32::try_from(left), u32::try_from(size)) {
-        (Ok(left), Ok(size)) => left.checked_div(size)?.into(),
-        _ => quotient_of_large(left, size)?,
-    };
-    let quotient = quotient as i64;
-    Some(if (units < 0) == (part < 0) { quotient } else { quotient.wrapping_neg() })
-}
-
-/// Long division, one binary digit per step.
-#[cold]
-fn quotient_of_large(mut left: u64, size: u64) -> Option<u64> {
-    if size == 0 {
-        return None;
-    }
-    let digits = size.leading_zeros().saturating_sub(left.leading_zeros());
-    let (mut shifted, mut quotient) = (size << digits, 0);
-    for _ in 0..=digits {
-        quotient <<= 1;
-        if left >= shifted {
-            left -= shifted;
-            quotient |= 1;
-        }
-        shifted >>= 1;
-    }
-    Some(quotient)
-}
-
-/// Half of an integer, rounded towards zero.
-fn half(units: i64) -> i64 {
-    units.wrapping_add(i64::from(units < 0)) >> 1
-}
-
-/// Quotient rounded down, so that the remainder is not negative; zero for a divisor of zero.
-fn floor_div(units: i64, part: i64) -> i64 {
-    let Some(towards_zero) = quotient(units, part) else { return 0 };
-    if towards_zero.wrapping_mul(part) > units { towards_zero.wrapping_sub(1) } else { towards_zero }
-}
-
-/// Remainder of the division rounded down.
-fn floor_mod(units: i64, part: i64) -> i64 {
-    units.wrapping_sub(floor_div(units, part).wrapping_mul(part))
 }
 
 /// Multiple of the raw range, in counts, nearest to `units` of the difference; `weight` is the units per count.
@@ -400,19 +353,6 @@ impl Counts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numbers::random::splitmix64;
-
-    #[test]
-    fn quotient_equals_checked_div() {
-        let mut state = 3;
-        let mut any = || (splitmix64(&mut state) as i64) >> (splitmix64(&mut state) % 64);
-        let ends = [0, 1, -1, i64::from(u32::MAX), 1 << 32, i64::MAX, i64::MIN + 1];
-        let random = (0..200_000).map(|_| (any(), any()));
-        for (units, part) in ends.into_iter().flat_map(|one| ends.map(|other| (one, other))).chain(random) {
-            assert_eq!(quotient(units, part), units.checked_div(part), "{units} by {part}");
-            assert_eq!(half(units), units / 2, "half of {units}");
-        }
-    }
 
     /// Encoder of 1000 counts per turn that moves by at most 100 counts per period.
     fn encoder() -> EncoderTable<f32> {
@@ -484,13 +424,6 @@ mod tests {
         let (mut counter, table) = began(10);
         assert_eq!(counter.read(&table, 1015), CountChange::By(5));
         assert_eq!(counter.read(&EncoderTable { wraps_at: 0, ..table }, 1020), CountChange::Implausible);
-    }
-
-    #[test]
-    fn floor_division_has_no_negative_remainder() {
-        assert_eq!((floor_div(-7, 3), floor_mod(-7, 3)), (-3, 2));
-        assert_eq!((floor_div(7, 3), floor_mod(7, 3)), (2, 1));
-        assert_eq!((floor_div(7, 0), floor_mod(7, 0)), (0, 7));
     }
 
     #[test]

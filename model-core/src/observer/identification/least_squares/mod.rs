@@ -48,14 +48,8 @@ impl<T: Real, const P: usize> Innovation<T, P> {
 }
 
 impl<T: Real, const P: usize> LeastSquares<T, P> {
-    /// A constant: the compiler clears the destination instead of copying from the stack.
-    const UNINITIALIZED: Self = Self { factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
-
-    /// Returns least squares without their table.
-    #[inline(always)]
-    pub fn uninitialized() -> Self {
-        Self::UNINITIALIZED
-    }
+    /// Least squares without their table. A constant: the compiler clears the destination instead of copying from the stack.
+    pub const UNINITIALIZED: Self = Self { factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
 
     /// Resets parameters and covariance to the design.
     pub fn reset(&mut self, table: &LearnerTable<T>) {

@@ -10,7 +10,7 @@ fn parameters_but_offset_are_limited() {
     let table = table();
     let furthest = LEAST_SQUARES.max_deviation as f32 * DEVIATION;
     for parameter in 0..PLAIN {
-        let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+        let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
         least_squares.reset(&table);
         let mut regressors = [0.0; PLAIN];
         regressors[parameter] = 1.0;
@@ -28,7 +28,7 @@ fn parameters_but_offset_are_limited() {
 #[test]
 fn parameter_within_limit_is_accepted() {
     let table = table();
-    let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+    let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
     least_squares.reset(&table);
     let mut regressors = [0.0; PLAIN];
     regressors[COMPLIANCE] = 2.0;
@@ -41,7 +41,7 @@ fn parameter_within_limit_is_accepted() {
 fn half_gap_keeps_variance_without_positions() {
     // A single flank shows the sum of half-gap and offset: half of either variance remains.
     let table = table();
-    let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+    let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
     least_squares.reset(&table);
     let mut regressors = [0.0; PLAIN];
     (regressors[HALF_GAP], regressors[OFFSET]) = (1.0, 1.0);
@@ -56,7 +56,7 @@ fn half_gap_keeps_variance_without_positions() {
 /// Least squares after an exact measurement of one parameter.
 fn measured(parameter: usize, value: f32) -> LeastSquares<f32, PLAIN> {
     let table = table();
-    let mut least_squares = LeastSquares::uninitialized();
+    let mut least_squares = LeastSquares::UNINITIALIZED;
     least_squares.reset(&table);
     let mut regressors = [0.0; PLAIN];
     regressors[parameter] = 1.0;
@@ -111,7 +111,7 @@ fn reset_of_half_gap_keeps_other_variances() {
 #[test]
 fn motor_slip_keeps_half_gap_variance() {
     let table = table();
-    let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
+    let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
     least_squares.reset(&table);
     let mut regressors = [0.0; PLAIN];
     (regressors[HALF_GAP], regressors[OFFSET]) = (1.0, 1.0);

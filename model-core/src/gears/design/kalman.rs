@@ -3,14 +3,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::gears::design::exponential::{exponential_minus_identity, flow};
+use super::exponential::{exponential_minus_identity, flow};
 
 /// Steps of the recursion: settled for every filter whose slowest pole is faster than a thousandth of the step rate.
 const STEPS: usize = 20_000;
 
 /// System x' = A x + B u + w with the measurement y = x_0 + v at every step.
 #[derive(Clone)]
-pub(super) struct System {
+pub(crate) struct System {
     /// A.
     pub dynamics: DMatrix<f64>,
     /// B.
@@ -22,7 +22,7 @@ pub(super) struct System {
 }
 
 /// Filter for one step length.
-pub(super) struct Filter {
+pub(crate) struct Filter {
     /// State response to an input held over the step.
     pub response: DMatrix<f64>,
     /// Gain of each state per unit of innovation, after the step.

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let answer = controller.step(&joint.samples(), &Command::Position { now, ahead });
             joint.advance(answer.shaped.torque, 0.0);
             let link = answer.estimates.link;
-            largest_turns = largest_turns.max(now.position.less(link.turns, link.fraction).abs());
+            largest_turns = largest_turns.max(now.position.difference(link.turns, link.fraction).abs());
         }
         let gap = controller.estimates().half_backlash;
         let (width_um, deviation_um) = (1e6 * gap.value, 1e6 * gap.variance.sqrt());

@@ -4,8 +4,8 @@
 //! Parts of a page:
 //!
 //! - a fence `toml` after a line that begins with a name, as in "`k9/k9.toml`:", is a file, written when it is reached;
-//! - a fence `console` holds commands after `$ `, each with its output; `console emulated-board` holds commands that need the
-//! emulated board; any other fence is not run;
+//! - a fence `console` holds commands after `$ `, each with its output; `console emulated-board` holds commands that
+//!   need the emulated board; any other fence is not run;
 //! - in an output a line `...` stands for any lines, and `[...]` within a line for any text;
 //! - a command that ends with another code than 0 is followed by `$ echo $?`.
 

@@ -181,7 +181,7 @@ mod tests {
 
     /// Torque that changes its sign every three blocks.
     fn swinging(block: u16) -> f32 {
-        if block / 3 % 2 == 0 { 1.0 } else { -1.0 }
+        if (block / 3).is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
     #[test]
@@ -241,9 +241,7 @@ mod tests {
 
     #[test]
     fn interrupt_keeps_votes_and_decision() {
-        let mut check = TorqueResponseCheck::<f32>::default();
-        check.votes = 3;
-        check.response = TorqueResponse::Tested;
+        let mut check = TorqueResponseCheck::<f32> { votes: 3, response: TorqueResponse::Tested, ..Default::default() };
         check.interrupt();
         assert_eq!((check.votes, check.response()), (3, TorqueResponse::Unknown));
         check.response = TorqueResponse::Reversed;

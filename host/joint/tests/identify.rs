@@ -797,7 +797,7 @@ const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
         &["the torque of this log is", "a current"],
     ),
     ("a torque with an offset", |rows| each(rows, |row| row[3] += 0.6), &["a constant torque of", "zero"]),
-    ("a torque backwards in time", |rows| backwards(rows), &["drives", "time runs backwards"]),
+    ("a torque backwards in time", |rows| backwards(rows), &["friction of the motor is negative", "time runs backwards"]),
     (
         "an output that has slipped",
         |rows| slipped(rows, 100.0),
@@ -918,7 +918,7 @@ fn contradicting_output_torque_rejected() {
     refused("a clipped drive", &["is not in proportion", "clipped"], &|row| {
         row[3] = row[3].clamp(-0.8 * most, 0.8 * most)
     });
-    refused("another scale one way", &["a constant torque of", "one way"], &|row| {
+    refused("another scale one way", &["a constant torque of", "in both directions"], &|row| {
         row[3] *= if row[3] > 0.0 { 1.4 } else { 1.0 }
     });
 }
@@ -956,7 +956,7 @@ fn periodic_errors_do_not_bias_gap() {
     joint(&[&["identify", text(&other), "--joint", "q1", "--out", text(&out)], &wrong[..]].concat()).succeeded();
     let record = json(&out.join("findings.json"));
     holds(&record, &[(BACKLASH, 40.0), (STIFFNESS, 10.3e3), (MOTOR_DRY, 0.03)]);
-    assert!(record["assumptions"].to_string().contains("comes 3 times a turn"), "{record}");
+    assert!(record["assumptions"].to_string().contains("3 times a turn"), "{record}");
 }
 
 /// Guards the consistency checks against false rejections.

@@ -89,7 +89,7 @@ fn reading_reason_clears_error_flag() {
     assert_eq!(reads(&frames, 3), expected);
 }
 
-/// Whether it is pulled up or down.
+/// A line that no encoder drives reads as missing, pulled up or down.
 #[test]
 fn undriven_line_is_no_encoder() {
     assert_eq!(reads(&[(ANGLE, 0xffff), (ANGLE, 0xffff)], 2)[1], Err(EncoderFault::Missing));

@@ -15,7 +15,7 @@ use parameters::{JointParameters, Surroundings};
 
 const PRESETS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
 
-/// What is wrong between controller and joint.
+/// Wrong signs between controller and joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Wiring {
     Right,
@@ -24,7 +24,7 @@ enum Wiring {
     OutputReversed,
 }
 
-/// What is asked for.
+/// Task of the loop.
 #[derive(Debug, Clone, Copy)]
 enum Task {
     /// A sine of 1 Hz about where the link is, from peak to peak [turns].
@@ -35,19 +35,19 @@ enum Task {
     Pulled(f32, f32, f32),
 }
 
-/// How a loop went.
+/// Outcome of a loop.
 #[derive(Debug)]
 struct Outcome {
     /// When the torque was taken away [s], and how far the link had gone by then [rad].
     reversed: Option<(f64, f64)>,
     /// Largest torque after that [N m].
     torque_after: f32,
-    /// What the observer says at the end.
+    /// Verdict of the observer at the end.
     response: TorqueResponse,
     source: Source,
-    /// How far the link had gone at most [rad].
+    /// Largest travel of the link [rad].
     furthest: f64,
-    /// What a width probe says that begins then.
+    /// Progress of a width probe that begins at the end.
     probe: Option<ProbeProgress<f32>>,
 }
 

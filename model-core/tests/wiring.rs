@@ -57,7 +57,7 @@ impl Joint {
     }
 }
 
-/// What is wrong between joint and check.
+/// Wrong signs, scales and connections between joint and check.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Miswiring {
     Nothing,
@@ -144,7 +144,7 @@ impl Miswiring {
     }
 }
 
-/// What came of a check.
+/// Outcome of a check.
 struct Outcome {
     wiring: Wiring<f32>,
     refusal: Option<WiringRefusal>,
@@ -285,7 +285,7 @@ fn named(wiring: &Wiring<f32>) -> Vec<(WiringItem, WiringVerdict<f32>)> {
     wiring.iter().filter(|(_, verdict)| verdict.is_bad()).collect()
 }
 
-/// Whether exactly the item of the miswiring is named; prints what was instead. Other miswirings than none are never found
+/// Returns true if exactly the item of the miswiring is named; otherwise prints the outcome. A miswired joint is never found
 /// right.
 fn is_named(told: &Joint, is: Miswiring, seed: u64, label: &str) -> bool {
     let (outcome, allowed) = outcome(told, is, seed);

@@ -114,7 +114,7 @@ pub extern "C" fn joint_status_name(status: u32) -> *const c_char {
     status_text(status, 0)
 }
 
-/// What a status means and what to do about it, in one sentence; never NULL.
+/// Meaning of a status and its remedy, in one sentence; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_status_text(status: u32) -> *const c_char {
     status_text(status, 1)

@@ -630,7 +630,7 @@ uint32_t joint_version(void);
 // The name of a status, such as "JOINT_STATUS_OK"; never NULL.
 const char *joint_status_name(uint32_t status);
 
-// What a status means and what to do about it, in one sentence; never NULL.
+// Meaning of a status and its remedy, in one sentence; never NULL.
 const char *joint_status_text(uint32_t status);
 
 // Reads the properties of tables, as joint_tables_facts; `abi` is JOINT_ABI.

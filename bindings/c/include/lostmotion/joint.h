@@ -497,7 +497,7 @@ typedef struct JointEstimates {
   struct JointEstimate encoder_offset_rad;
   // Torsional compliance from sun to link, at the output.
   struct JointEstimate compliance_rad_per_Nm;
-  // Age of output readings beyond their time stamp, less the motor encoder's.
+  // Delay of output readings not covered by their time stamps, minus the corresponding delay of the motor encoder.
   struct JointEstimate skew_s;
   // Torque that the motor loses in either direction.
   struct JointEstimate torque_bias_Nm;

@@ -171,7 +171,7 @@ impl MotionProfile {
             "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..default },
             // The link keeps its stated friction and weight.
             "any" => Self { trajectory: Trajectory::Any, gravity: None, ..default },
-            // A recording has its own load, or none.
+            // A recorded motion carries no gravity torque by default: its load is recorded with it or absent.
             _ => Self { gravity: None, ..default },
         }
     }

@@ -270,7 +270,7 @@ pub struct Wires {
     pub is_held: bool,
     /// True if the watchdog is frozen while the core is held.
     pub watchdog_stops_with_core: bool,
-    /// True if PB4 and PB6 are pulled down for an empty battery on USB.
+    /// True if the USB dead-battery pull-downs at PB4 and PB6 are on (bit UCPD1_DBDIS is 0).
     pub pulls_down_for_usb: bool,
     /// True if the regulator is in its highest range, with boost if there is one.
     pub boost: bool,

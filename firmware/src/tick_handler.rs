@@ -263,7 +263,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     fn trip(&mut self, trip: Trip) {
         self.safe_state.trip(trip);
         self.show_state();
-        // There is always room: a run trips once, and at most one answer is pending besides.
+        // There is always room: a run trips once, and at most one other event, an answer, is pending.
         let _ = self.end.events.enqueue(Event::Tripped(trip));
     }
 }

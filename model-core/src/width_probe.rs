@@ -205,8 +205,8 @@ impl<'tables, T: Real> Probe<'tables, T> {
             return ProbeProgress::Refused(ProbeRefusal::Unsteady);
         }
         let quarter = T::HALF * T::HALF;
-        // Friction may have held either rest off its position; the difference of the two passes is added to the
-        // variance.
+        // Friction may have stopped the motor short of its equilibrium on either flank. The squared difference between
+        // the first and the last pass on the drive flank is therefore added to the variance.
         let variance = (table.variance + disagreement * disagreement) * quarter * quarter;
         ProbeProgress::Done(Estimate { value: width * quarter, variance, valid: true })
     }

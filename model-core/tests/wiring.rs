@@ -285,8 +285,8 @@ fn named(wiring: &Wiring<f32>) -> Vec<(WiringItem, WiringVerdict<f32>)> {
     wiring.iter().filter(|(_, verdict)| verdict.is_bad()).collect()
 }
 
-/// Returns true if exactly the item of the miswiring is named; otherwise prints the outcome. A miswired joint is never found
-/// right.
+/// Returns true if exactly the item of the miswiring is named; prints the findings otherwise. Fails if a miswired joint
+/// is found right.
 fn is_named(told: &Joint, is: Miswiring, seed: u64, label: &str) -> bool {
     let (outcome, allowed) = outcome(told, is, seed);
     assert!(outcome.torque <= allowed, "{label} {is:?}: {} N m of {allowed}", outcome.torque);
@@ -297,7 +297,7 @@ fn is_named(told: &Joint, is: Miswiring, seed: u64, label: &str) -> bool {
         "{label} {is:?} goes unnoticed:\n{}",
         outcome.wiring
     );
-    // Exchanged counts overstate the travel.
+    // With exchanged counts the measured travel is too large, so that the check may end early.
     let may_end = outcome.refusal.is_none() || is == Miswiring::Exchanged;
     let right = may_end
         && match is.item() {

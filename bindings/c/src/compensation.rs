@@ -124,11 +124,12 @@ fn all_finite(finite_probe: f32) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointStage {
-    /// A flank carries, or the joint needs none and the motor rests in the middle of the gap.
+    /// A flank carries the demand; or friction holds the link at its set-point, and the motor waits in the middle of
+    /// the gap.
     Touching = 0,
-    /// Motion through the gap towards a flank.
+    /// The motor moves through the gap towards a flank.
     Crossing = 1,
-    /// Closing on a flank at a small speed.
+    /// The motor approaches a flank at a small speed.
     Landing = 2,
     /// Control without compensation: the gap is not observable.
     Plain = 3,

@@ -202,7 +202,7 @@ pub struct JointEstimates {
     pub encoder_offset_rad: JointEstimate,
     /// Torsional compliance from sun to link, at the output.
     pub compliance_rad_per_Nm: JointEstimate,
-    /// Age of output readings beyond their time stamp, less the motor encoder's.
+    /// Delay of output readings not covered by their time stamps, minus the corresponding delay of the motor encoder.
     pub skew_s: JointEstimate,
     /// Torque that the motor loses in either direction.
     pub torque_bias_Nm: JointEstimate,

@@ -13,9 +13,10 @@ use crate::wires::{MICROSECOND, SECOND, Surroundings, Time};
 
 /// Common rates of crystals and clock signals [Hz].
 const RATES: [u64; 6] = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000];
-/// Deviation of the internal oscillator at room temperature, by the data sheets of all chips [thousandths].
+/// Largest frequency error of the internal oscillator at room temperature, from the data sheets of all chips
+/// [thousandths].
 const INTERNAL_OFF: i64 = 10;
-/// Limit from the loss of the clock to the outputs being off: the watchdog's half second and its spread.
+/// Longest time from the loss of the clock until the outputs are off: the watchdog's half second and its tolerance.
 const OUTPUTS_OFF: Time = SECOND * 6 / 10;
 
 /// Dead external source: the internal oscillator takes over, and the hello reports it.

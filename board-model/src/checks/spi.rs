@@ -65,7 +65,7 @@ impl Master<'_> {
         };
         self.tick += 1;
         let mut frame = [0; FRAME];
-        // The longest exchange fits a frame; the firmware's tests check that.
+        // Sealing cannot fail: the firmware's tests check that the longest exchange fits a frame.
         let _ = sealed(&exchange, &mut frame);
         frame
     }

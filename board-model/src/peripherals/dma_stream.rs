@@ -16,7 +16,8 @@ const FCR: u32 = 0x14;
 const FLAGS: u32 = 0x3d;
 const HALF: u32 = bit(4);
 const COMPLETE: u32 = bit(5);
-/// Interrupt enables of errors, half and end in the control register, one position below their flags.
+/// Bits of the control register that enable the interrupts of errors, half transfer and complete transfer; each is one
+/// position below its flag.
 const ENABLES: u32 = bits(4, 1);
 const CIRCULAR: u32 = 8;
 /// Interrupts of the streams of DMA1 and DMA2: RM0090 table 61.

@@ -96,7 +96,7 @@ impl Pages {
 impl LastPages {
     /// Enables supply monitoring at 2.9 V and reads the division of flash.
     fn watch_supply(power: pac::PWR, flash: &pac::FLASH) -> Self {
-        // Pull-downs for an empty battery on USB, at PB4 and PB6 (RM0440 6.4.3): to be switched off whoever uses the pins.
+        // Switches off the USB dead-battery pull-downs at PB4 and PB6 (RM0440 6.4.3), for any use of the two pins.
         power.cr3().modify(|r, w| {
             // SAFETY: UCPD1_DBDIS, which not all chips' descriptions have.
             unsafe { w.bits(r.bits() | 1 << 14) }

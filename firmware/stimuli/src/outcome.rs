@@ -1,5 +1,5 @@
-//! Classes of ticks by the change of the contact set, for reports of worst cases; determined from the outputs before
-//! and after.
+//! Classes of ticks by the change of the contact set, for reports of worst cases. The class follows from the outputs of
+//! the joint before and after the tick.
 
 use model_core::gears::Outputs;
 use parameters::ContactState;
@@ -7,19 +7,19 @@ use parameters::ContactState;
 /// Change of the contact set in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Class {
-    /// Drive sides in contact, before and after.
+    /// Every mesh touches on its drive side before and after the tick.
     DriveSide,
-    /// Back sides in contact, before and after.
+    /// Every mesh touches on its back side before and after the tick.
     BackSide,
-    /// All teeth apart, before and after.
+    /// No mesh touches before or after the tick.
     Apart,
-    /// Mixed contact, unchanged.
+    /// The meshes differ in contact, and no mesh changes in the tick.
     Mixed,
-    /// Some meshes changed.
+    /// Some meshes change their contact in the tick.
     SomeChanged,
-    /// Every mesh changed.
+    /// Every mesh changes its contact in the tick.
     AllChanged,
-    /// Non-finite numbers.
+    /// A deflection or the wind-up is not finite before or after the tick.
     NotFinite,
 }
 

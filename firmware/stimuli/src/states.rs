@@ -125,7 +125,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         }
     }
 
-    /// Continues from the joint's state, sometimes with new torques.
+    /// Continues from the last state of the joint; one trial in a hundred draws new torques.
     fn continue_reached(&mut self) -> Trial<N> {
         if self.random.below(100) == 0 {
             self.torques = self.size.any(&mut self.random);

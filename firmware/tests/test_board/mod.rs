@@ -29,7 +29,7 @@ use model_core::observer::Memory;
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = 8400;
 
-/// Longest timeout: for tests in which the host is silent for long.
+/// Timeout that never expires, for tests in which the host is silent for a long time.
 pub const NO_TIMEOUT: u32 = u32::MAX;
 
 /// Both directions of the line.

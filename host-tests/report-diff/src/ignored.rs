@@ -49,7 +49,7 @@ pub const MARK: &str = " EMULATED";
 /// Suffix of a commit whose sources were modified.
 pub const CHANGED: &str = " (changed)";
 
-/// Places and their rules; the rules for dates, times of day and folders hold everywhere besides.
+/// Places and the rules that apply to them. The rules for dates, times of day and folders apply everywhere.
 pub const RULES: &[(Place, &str)] = &[
     (Place::Key("date"), DATE),
     (Place::Key("git_commit"), COMMIT),

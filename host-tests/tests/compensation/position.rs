@@ -69,19 +69,19 @@ fn check_case_against_rivals(test: &Test, case: &Case, seed: u64) {
     }
 }
 
-/// Slow motion in which friction dominates.
+/// The compensation beats motor PID and rival in slow motion, in which friction dominates.
 #[test]
 fn slow_motion_beats_rivals() {
     check_against_rivals(&shipped("t1"), 101);
 }
 
-/// Fast motion in which inertia dominates.
+/// The compensation beats motor PID and rival in fast motion, in which inertia dominates.
 #[test]
 fn inertial_motion_beats_rivals() {
     check_against_rivals(&shipped("t2"), 102);
 }
 
-/// Swinging weight.
+/// The compensation beats motor PID and rival under a swinging weight.
 #[test]
 fn swinging_weight_beats_rivals() {
     check_against_rivals(&shipped("t2b"), 103);
@@ -90,7 +90,8 @@ fn swinging_weight_beats_rivals() {
 /// Without preview, a slow weight causes few crossings back to the flank just left.
 #[test]
 fn slow_weight_causes_few_needless_crossings() {
-    // Seven reversals from three seconds on: every further crossing is one of a pair there and back.
+    // There are seven reversals from three seconds on; each crossing in excess of seven is needless, as half of a pair
+    // to and fro.
     let (test, seeds) = (shipped("t2b-slow-no-preview"), 301..349);
     let figures = |seed| figures_in(&test, &case_of(&test, seed, &q1(), &DriveTrainParameters::q1()), seed, NoPreview);
     let ours: Vec<_> = seeds.map(figures).collect();
@@ -105,7 +106,7 @@ fn slow_weight_causes_few_needless_crossings() {
     }
 }
 
-/// Random motion.
+/// The compensation beats motor PID and rival in random motion.
 #[test]
 fn random_motion_beats_rivals() {
     check_against_rivals(&shipped("random"), 104);

@@ -1,5 +1,6 @@
-//! Power-up: encoders with arbitrary zeros, a joint anywhere in its gap or already turning, a late output encoder. All tests draw encoder
-//! zeros and the place in the gap; the tests below look at them alone.
+//! Power-up: encoders with arbitrary zeros, a joint anywhere in its gap or already turning, a late output encoder.
+//! Every closed-loop test draws encoder zeros and a place in the gap at random; the tests of this file check their
+//! effect alone.
 
 use std::path::Path;
 

@@ -51,7 +51,8 @@ impl EnergyBalance {
         let Relative { planets, gap, .. } = &state.position;
         let Relative { planets: rates, gap: gap_rate, .. } = &state.rate;
 
-        // Speeds of the bodies while the rigid body is at rest: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
+        // Speeds relative to the rigid-body motion, in which the sun moves by 2 and a planet by 1 per unit of the
+        // carrier. Relative to it the bodies carry no momentum: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
         let ClosedForm { sun, planet, carrier, damping, .. } = self.form;
         let shares = 2.0 * sun * gap_rate + planet * rates.iter().map(|rate| gap_rate - rate).sum::<f64>();
         let carrier_speed = -shares / (4.0 * sun + 3.0 * planet + carrier);

@@ -71,7 +71,7 @@ impl Experiment {
         }
         let settings = settings(&train);
         let motion = profile.motion(seed);
-        // Estimates are tested to a fraction of a percent, so the plant has adaptive steps.
+        // Adaptive steps keep the plant's error below the tested errors of the estimates, fractions of a percent.
         let setup = Setup {
             start: Start::Still,
             stepping: Stepping::Adaptive,

@@ -1,4 +1,5 @@
-//! The long run: many seeds, widths, motions and encoders; worst of each error. Ignored by default because it takes minutes.
+//! Long run over many seeds, half-backlashes, motions and encoders, which prints the largest value of each error.
+//! Ignored by default because it takes minutes.
 
 use model_core::observer::{MAPPED, Source};
 

@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(failure.exit_code(), 2);
     }
 
-    /// A file that is no serial port is rejected by name.
+    /// Opening a file that is no serial port fails, and the message names the file.
     #[test]
     fn file_is_no_port() {
         let failure = Port::open("/dev/null", 115_200).err().expect("not a port");

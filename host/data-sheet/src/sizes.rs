@@ -175,7 +175,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
     })
 }
 
-/// Value with four digits: derived and assumed values are not known better.
+/// Rounds to four significant digits: derived and assumed values are no more precise.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -41,7 +41,7 @@ impl Factor {
     }
 }
 
-/// Logged torque over the torque that the motor's inertia needs while the joint rings.
+/// Ratio of the logged torque to the torque that accelerates the motor's inertia while the joint rings.
 pub fn ringing_factor(free: &Solution) -> Factor {
     let compliance = free.values[twist::COMPLIANCE];
     let value = 1.0 / (1.0 + free.values[twist::TORQUE_ERROR] / compliance);

@@ -17,11 +17,11 @@ use log_reader::resolution::{count_angle, resolution};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// Moments compared at most, angle against angle.
+/// Largest number of moments at which the angles are compared.
 const MOMENTS_MAX: usize = 4000;
 /// Tolerance of the ratio over a whole turn and more: encoder errors cancel, and teeth do not slip.
 const RATIO_TOLERANCE_OVER_TURNS: f64 = 2e-3;
-/// Errors of both encoders, at both ends of the output's travel [rad].
+/// Sum of the errors of both encoders at both ends of the output's travel [rad].
 const ENCODER_ERROR_SUM: f64 = 0.01;
 /// Tolerance of the ratio within a turn: an encoder error of 0.2 degrees mimics this much.
 const RATIO_TOLERANCE_WITHIN_A_TURN: f64 = 1e-2;
@@ -37,24 +37,25 @@ const BALANCE_BOX: f64 = 8e-3;
 const TOTAL_INERTIA_FACTOR_MAX: f64 = 1.6;
 /// Largest ratio between the log's and the joint file's motor inertia, which a data sheet states.
 const MOTOR_INERTIA_FACTOR_MAX: f64 = 1.25;
-/// Largest ratio between the torques before and behind the gears, beside the gear ratio.
+/// Largest factor by which the torque behind the gears may differ from the torque before the gears times the gear
+/// ratio.
 const GEAR_TORQUE_FACTOR_MAX: f64 = 1.5;
 /// A cause is likely within this logarithm of the factor; the CAUSES_NAMED nearest causes are named.
 const CAUSE_DISTANCE_MAX: f64 = 0.2;
 const CAUSES_NAMED: usize = 4;
-/// Bits by which both encoders may be stated wrong.
+/// Largest error of the counts per turn of both encoders that is tried as a cause, as a power of two.
 const BITS_TRIED: i32 = 5;
 /// If a torque sensor at the output gives both inertias this much larger, or this much smaller, the time step is wrong
 /// rather than both inertias.
 const BOTH_INERTIAS_FACTOR_MAX: f64 = 1.08;
 /// Largest step of the offset between the encoders, as a share of the lost motion.
 const OFFSET_STEP_MAX: f64 = 0.03;
-/// Largest phase of the swing during the output's age [rad]; beyond, the reading says little of the twist.
+/// Largest phase of the swing during the output's age [rad]; an older reading hardly depends on the twist.
 const OUTPUT_AGE_MAX: f64 = 0.35;
 /// Variance, as a share of the quantisation's, below which angles were never read by an encoder.
 const SIMULATED_VARIANCE_SHARE: f64 = 1e-6;
-/// Largest age of the motor's readings relative to the output's, as a phase of the swing [rad]; beyond, they do not go
-/// with the torque.
+/// Largest age of the motor's readings relative to the output's, as a phase of the swing [rad]; older readings do not
+/// belong to the logged torque.
 const MOTOR_AGE_MAX: f64 = 0.2;
 /// Half-intervals below zero from which a friction contradicts the log.
 const NEGATIVE_FRICTION_HALVES: f64 = 3.0;
@@ -106,7 +107,7 @@ impl Causes {
     }
 }
 
-/// Rejects a log whose angles do not turn by the joint's ratio.
+/// Rejects a log whose angles contradict the joint's ratio.
 pub fn check_angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
     let [motor, output] = [&log.motor, &log.output].map(|angles| range_of(angles));
     let of_motor = motor / prior.ratio();
@@ -216,7 +217,8 @@ pub fn check_torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()
     Err(contradiction(log, prior, whole, "all that turns", prior.total_inertia()))
 }
 
-/// Rejects a log whose ringing needs another motor inertia; `free` is a fit with an unknown torque scale.
+/// Rejects a log whose torque during ringing contradicts the motor inertia in the joint file; `free` is a fit with an
+/// unknown torque scale.
 pub fn check_ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
     let factor = balances::ringing_factor(free);
     if !factor.is_determined() || !factor.is_certainly_outside(MOTOR_INERTIA_FACTOR_MAX) {
@@ -225,7 +227,7 @@ pub fn check_ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<
     Err(contradiction(log, prior, factor, "the motor", prior.motor_inertia))
 }
 
-/// Rejects a log whose encoders change their offset: a slip, lost counts, or two logs in one.
+/// Rejects a log in which the offset between the encoders changes: a slip, lost counts, or two joined logs.
 pub fn check_offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     let Some(steps) = twist::offset_steps(log, rows, prior) else { return Ok(()) };
     let least = (OFFSET_STEP_MAX * prior.lost_motion).max(2.0 * counts(prior));
@@ -256,7 +258,8 @@ fn doubled(turn: u64, times: i32) -> Option<u64> {
     if times < 0 { turn.is_multiple_of(factor).then(|| turn / factor) } else { turn.checked_mul(factor) }
 }
 
-/// Rejects a log in which motor and output are read so far apart that the swing turns in between.
+/// Rejects a log in which motor and output are read so far apart in time that the swing reverses between the two
+/// readings.
 pub fn check_age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     let age = twist.solution.values[twist::SKEW];
     let scatter = twist.solution.half(&[(twist::SKEW, 1.0)]);
@@ -283,7 +286,7 @@ pub fn check_age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
 }
 
 /// Rejects a log of filtered angles: their scatter is below the encoders' and above that of simulated angles, or they
-/// follow the torque so late that the swing turns in between.
+/// follow the torque so late that the swing reverses in the meantime.
 pub fn check_filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     let Some(shares) = log.variance_shares(prior) else { return Ok(()) };
     let most = OUTPUT_AGE_MAX * prior.swing_period() / TAU;

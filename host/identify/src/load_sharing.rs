@@ -75,7 +75,7 @@ impl LoadSharing {
         self.mean(&self.as_stated, torque)
     }
 
-    /// Additional reduction by errors one standard deviation larger [rad].
+    /// Growth of the reduction if the tooth errors are larger by one standard deviation [rad].
     pub fn excess_reduction(&self, torque: f64) -> f64 {
         self.mean(&self.with_excess, torque) - self.reduction(torque)
     }

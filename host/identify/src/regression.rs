@@ -7,20 +7,20 @@ use nalgebra::{DMatrix, DVector};
 
 /// Rounds of reweighting outliers.
 const REWEIGHTING_ROUNDS: usize = 12;
-/// After ROUNDS_BEFORE_EXCLUSION rounds, residuals beyond EXCLUSION_SIGMA deviations are excluded: they belong to
+/// After ROUNDS_BEFORE_EXCLUSION rounds, residuals above EXCLUSION_SIGMA deviations are excluded: they stem from
 /// another state, such as bouncing teeth.
 const ROUNDS_BEFORE_EXCLUSION: usize = 5;
 const EXCLUSION_SIGMA: f64 = 8.0;
-/// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
+/// Number of deviations above which the weight of a residual decreases (Huber); the usual constant for 95 % efficiency.
 const HUBER: f64 = 1.345;
 
-/// Error amplification of an unknown in a log that separates the unknowns: the change of the unknown's contribution to
-/// the values if each equation is off by one, with the worst signs. It is 5.5 and less in simulated reversal tests of
-/// the presets; with sines of one strength, where encoder and tooth errors, inertia and compliance are confounded, up
-/// to 10,000.
+/// Error amplification above which the interval of an unknown is widened. The error amplification is the change of the
+/// unknown's contribution to the values if each equation is off by one, with the worst signs. It is at most 5.5 in
+/// simulated reversal tests of the presets. With sines of one strength it is up to 10,000: encoder errors are
+/// confounded with tooth errors, and inertia with compliance.
 const AMPLIFICATION_SEPARATED: f64 = 6.0;
-/// From this amplification on, an unknown is not separated from the others; the threshold falls by REPETITION_PENALTY
-/// if all strokes are alike.
+/// Error amplification from which on an unknown counts as not identifiable; REPETITION_PENALTY is subtracted if all
+/// strokes are alike.
 const AMPLIFICATION_MAX: f64 = 20.0;
 const REPETITION_PENALTY: f64 = 14.0;
 

@@ -32,8 +32,8 @@ pub fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Student's 97.5 % quantile: tables for one to three degrees of freedom, interpolated linearly in the inverse; beyond,
-/// the first terms of its expansion (Abramowitz and Stegun, 26.7.5).
+/// Student's 97.5 % quantile: tables for one to three degrees of freedom, interpolated linearly in the inverse; for
+/// more degrees of freedom, the first terms of its expansion (Abramowitz and Stegun, 26.7.5).
 pub fn student(freedom: f64) -> f64 {
     const QUANTILE_TABLE: [f64; 3] = [12.706, 4.303, 3.182];
     const NORMAL: f64 = 1.959_964;

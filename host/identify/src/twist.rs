@@ -331,12 +331,12 @@ impl Twist {
         most.map(|(_, harmonic)| harmonic)
     }
 
-    /// Lost share of the load beyond the known losses, with its standard deviation.
+    /// Share of the load that is lost in addition to the known losses, with its standard deviation.
     pub fn excess_loss(&self, prior: &PriorModel) -> (f64, f64) {
         (-self.solution.values[LOSS] / prior.compliance, self.solution.deviation(LOSS) / prior.compliance)
     }
 
-    /// Returns true if a fit with unknown losses determines them.
+    /// Returns true if the fit, with the losses as an unknown, determines the losses.
     pub fn determines_losses(&self, prior: &PriorModel) -> bool {
         self.excess_loss(prior).1 < LOSS_DETERMINED_SHARE * LOSS_WIDTH
     }

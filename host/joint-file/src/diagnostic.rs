@@ -155,7 +155,8 @@ mod tests {
         let (sender, receiver) = std::sync::mpsc::channel();
         std::thread::spawn(move || [unknown, broken].iter().try_for_each(|text| sender.send(shown(text))));
         for what in ["unknown", "broken"] {
-            // Normally below a second; a time that grew with the square of the file would be minutes.
+            // Normally takes less than a second; a time proportional to the square of the file's length would be
+            // minutes.
             let shown = receiver.recv_timeout(Duration::from_secs(30)).expect(what);
             assert!(shown.contains("100 problems, and there may be more"), "{what}: {shown}");
         }

@@ -19,7 +19,7 @@ pub struct Source {
 /// Beginning of the comment behind a derived number.
 pub const DERIVED: &str = "derived from";
 
-/// Problems reported at most; after so many fixes the user runs the command again.
+/// Largest number of reported problems; a user who has fixed this many runs the command again.
 pub(crate) const PROBLEMS_MAX: usize = 100;
 
 /// Problems and remarks of one file, collected section by section.

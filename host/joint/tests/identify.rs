@@ -534,7 +534,8 @@ fn unobservable_parameter_is_not_guessed() {
     assert!(backlash.contains("identified from log.csv"), "{backlash}");
 }
 
-/// Encoders of 5000 and 25,000 lines with every edge counted; then a motor encoder whose edges are declared as lines.
+/// Encoders with 20,000 and 100,000 counts per turn (no powers of two) are identified. A motor encoder of 20,000 counts
+/// that is declared with its 5000 lines is rejected.
 #[test]
 fn any_counts_per_turn_identified() {
     let folder = folder();

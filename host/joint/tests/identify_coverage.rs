@@ -69,7 +69,8 @@ impl Count {
     }
 }
 
-/// Identifies one log of a joint that differs from its file.
+/// Identifies a simulated log of a joint whose parameters differ from the joint file, and counts the intervals that
+/// contain the true values.
 fn identified(name: &str, seed: u64, count: &mut Count) {
     let preset = joint_file::preset(name).expect("a preset");
     let stated = |key: &str| joint_file::value(preset, key).ok().flatten().and_then(|value| value.parse::<f64>().ok());

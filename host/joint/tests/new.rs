@@ -282,7 +282,8 @@ fn derived_stiffness_warning_names_source() {
     assert!(!of_stiffness.any(|line| line.contains("typed in")), "{}", made.err);
 }
 
-/// A servo of 353.5:1, whose motor could not swing a link of ten times the rotor's inertia.
+/// A motor too weak for a link of ten times the rotor's inertia: the assumed link inertia is what half of the motor's
+/// torque limit accelerates in the standard test. Servo of ratio 353.5.
 #[test]
 fn assumed_link_fits_motor() {
     const SERVO: Sheet =

@@ -62,7 +62,7 @@ impl LogFile {
             let heads = |columns: &Columns| columns.without_rows().renamed(&map.columns);
             let [has_what_is_wanted, has_counts]: [&dyn Fn(&Columns) -> bool; 2] = [
                 &|columns| heads(columns).is_ok_and(|own| accepts(&own)),
-                // A simulated run also logs the true angles; a topic with encoder counts takes precedence.
+                // Topics with encoder counts take precedence: a simulated run also logs the true angles.
                 &|columns| heads(columns).is_ok_and(|own| own.have_counts()),
             ];
             mcap_log::read(&self.bytes, topic, has_what_is_wanted, has_counts)

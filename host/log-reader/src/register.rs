@@ -10,7 +10,7 @@ use report::number::{ESTIMATE, TYPED};
 const WIDTHS: RangeInclusive<u32> = 10..=32;
 /// Largest share of readings outside of a register, equal to the share of bad readings that may be removed.
 const OUTSIDE_SHARE_MAX: f64 = 0.01;
-/// Rounding of angles beyond a register's end, as a share of the register.
+/// Distance by which rounding may carry an angle past the end of its register, as a share of the register.
 const ROUNDING: f64 = 1e-6;
 /// Step, as a share of a register wider than a turn, that crosses its end.
 const CROSSING_SHARE: f64 = 0.75;

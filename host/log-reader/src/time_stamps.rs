@@ -6,8 +6,8 @@ use report::failure::{Failure, Outcome};
 
 /// Periods after which counters wrap.
 const COUNTER_PERIODS: [f64; 3] = [256.0, 65_536.0, 4_294_967_296.0];
-/// Largest deviation of stamps from evenly counted periods, as a share of the log; beyond it the counter counts
-/// something else.
+/// Largest deviation of stamps from evenly counted periods, as a share of the log; if it is larger, the column does not
+/// count periods.
 const STAMP_DEVIATION_MAX: f64 = 0.02;
 
 /// Gives every row its own time if stamps repeat; rejects a log without a source of the times.

@@ -92,7 +92,7 @@ fn encoder_noises_are_independent() {
     }
     let ([motor_mean, motor_deviation], [output_mean, output_deviation]) = (statistics(&motor), statistics(&output));
     let product = motor.iter().zip(&output).map(|(a, b)| (a - motor_mean) * (b - output_mean)).sum::<f64>() / 10_000.0;
-    // Four standard deviations of the correlation of so many independent pairs.
+    // The bound is four standard deviations of the correlation of 10,000 independent pairs.
     assert!((product / motor_deviation / output_deviation).abs() < 0.04, "{product}");
 }
 

@@ -131,7 +131,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> 
     let mut shown = Vec::new();
     for (job, mut done) in jobs.iter().zip(done) {
         if job.seed == shown_seed {
-            // Repeats the run with the log and the pictures that were not kept for so many seeds.
+            // Without `keep_logs`, log and pictures of the run were not kept: the run is repeated to record them.
             if !keep_logs {
                 done = run_job(test, options, &Job { keep_logs: true, ..*job }, deadline)?;
             }

@@ -1,4 +1,5 @@
-//! Controllers of a test by name: the compensation or a rival. `rig::ActiveController` is a running controller.
+//! Names of the controllers of a test: the compensation and the rivals it is compared with. `rig::ActiveController` is
+//! a running controller.
 
 /// A controller by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

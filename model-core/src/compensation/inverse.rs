@@ -124,7 +124,7 @@ impl<T: Real> BacklashInverse<T> {
     /// Returns the flank, 1 or -1, to which the link moves although the demand presses the other flank or the edge was
     /// never measured.
     fn left_towards(&self, state: &LoopState<T>) -> Option<T> {
-        // A link that swings to and fro is not followed.
+        // While the link swings to and fro, no flank is reported.
         if !self.has_settled {
             return None;
         }
@@ -141,8 +141,8 @@ impl<T: Real> BacklashInverse<T> {
 
     /// Target of motor less link under the demand [rad].
     fn target_shift(&self, state: &LoopState<T>, anchor: T) -> T {
-        // An edge that was not measured follows from the gap, or from the other edge and the guessed lost motion.
-        // Without any edge the motor stays where it stands, wound up or not.
+        // An edge that was not measured is computed from a known half-gap, else from the other edge and the guessed
+        // half-gap. Without either, the target is the motor position at which the law took over; no wind-up is added.
         let [drive, back] = self.edges;
         let wind_up = self.demand.torque() / state.stiffness;
         let place = |seen: Option<T>, other: Option<T>, flank: Flank| {

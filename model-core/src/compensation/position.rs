@@ -71,7 +71,7 @@ struct SetPointTrend<T: Real> {
 /// Torques of spring and damper on the link.
 #[derive(Debug, Clone, Copy)]
 struct Feedback<T: Real> {
-    /// Set-point less link, beyond the dead band [rad].
+    /// Position error (set-point minus link) that exceeds the dead band [rad].
     error: T,
     /// Approach that replaces the linear law, if the motor could not brake the link otherwise.
     approach: Option<Approach<T>>,
@@ -111,7 +111,7 @@ impl<T: Real> PositionLaw<T> {
         *self = Self::new();
     }
 
-    /// Error beyond the dead band [rad].
+    /// Part of the position error that exceeds the dead band [rad].
     pub fn error_beyond_deadband(&self, state: &LoopState<T>) -> T {
         deadband(state.error, self.deadband)
     }

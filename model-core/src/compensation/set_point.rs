@@ -119,12 +119,13 @@ impl<T: Real> Command<T> {
 /// State of the compensation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// Contact: a flank carries, or the joint needs no flank and the motor rests in the middle of the gap.
+    /// A flank carries the demand; or friction holds the link at its set-point, and the motor waits in the middle of
+    /// the gap.
     #[default]
     Touching,
-    /// Path of the motor through the gap.
+    /// The motor follows its path through the gap.
     Crossing,
-    /// Approach to a flank at the landing speed, because the path has ended or the flank was lost.
+    /// The motor approaches a flank at the landing speed, because the path has ended or the flank was lost.
     Landing,
     /// Control without compensation: the estimates of the gap are not valid, or the compensation has stepped back.
     Plain,

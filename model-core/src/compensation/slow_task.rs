@@ -2,10 +2,10 @@
 
 use crate::numbers::Real;
 
-/// Task of a control period besides the torque.
+/// Task of a control period, in addition to computing the torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SlowTask {
-    /// Judgement by the monitor of the loop.
+    /// Check of the loop by the monitor.
     Monitor,
     /// Update of edges and target of the inverse of the backlash.
     UpdateEdges,

@@ -166,13 +166,13 @@ pub struct LandingTable<T: Real> {
     pub acceleration: T,
     /// Largest landing speed [rad/s].
     pub fastest: T,
-    /// Rise of the law's torque after a landing per period [-].
+    /// Rise of the law's torque per control period after a landing [-].
     pub rise: T,
     /// Rate at which a missed impulse is returned (K16) [1/s].
     pub repayment: T,
-    /// Opening over the half-gap beyond which a flank counts as lost [-].
+    /// Opening above which a flank counts as lost, over the half-gap [-].
     pub opening: T,
-    /// Opening over the half-gap below which a flank counts as touched [-].
+    /// Opening below which a flank counts as touched, over the half-gap [-].
     pub landed: T,
 }
 
@@ -180,7 +180,7 @@ pub struct LandingTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct SwitchingTable<T: Real> {
-    /// DemandEstimator beyond which a change of its sign counts [N m].
+    /// Planned demand above which a change of its sign counts [N m].
     pub planned: T,
     /// Uncertainty of a measured torque, M in (K13): unit of the switching hysteresis [N m].
     pub measured: T,
@@ -194,7 +194,7 @@ pub struct SwitchingTable<T: Real> {
     pub most_factor: T,
     /// Share of a change that the smoothed measured torque follows per period [-].
     pub smoothing: T,
-    /// Inverse of the change beyond which the smoothing is faster [1/(N m)].
+    /// Inverse of the torque change above which the torque is smoothed faster [1/(N m)].
     pub inverse_step: T,
 }
 
@@ -222,13 +222,13 @@ pub struct MonitorTable<T: Real> {
     pub least_demand: T,
     /// Decay of the count of unexplained flank changes: in general, and while the error is small [1/s].
     pub leaks: [T; 2],
-    /// Unexplained flank changes beyond which the loop hunts [-].
+    /// Count of unexplained flank changes above which the loop counts as hunting [-].
     pub most: T,
     /// RMS error below which the error is small, over half the lost motion [-].
     pub calm_per_half: T,
     /// Gain per period of the mean squared error [-].
     pub memory: T,
-    /// RMS error beyond which the loop hunts, over half the lost motion [-].
+    /// RMS error above which the loop counts as hunting, over half the lost motion [-].
     pub error_per_half: T,
     /// Growth of the bound of the RMS error per demand [rad/(N m)].
     pub error_per_demand: T,

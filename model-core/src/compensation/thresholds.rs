@@ -30,9 +30,9 @@ pub(super) struct PositionThresholds<T> {
     /// against an integral that winds up until the motor breaks loose. Tuned on `hil/disturbed-hold.toml`: opened at
     /// once, RMS 0.093 instead of 0.060 mrad.
     pub deadband_opening_rate: T,
-    /// Torque beyond the motor's limit that the law may ask for while the link is pushed hard, over that limit [-]: the
-    /// excess outweighs part of the damper between motor and link, so that the link is pushed back sooner. Tuned on
-    /// `hil/impact.toml`: with all torque, force 2.9 instead of 2.0 times the rated.
+    /// Excess over the motor's torque limit that the law may command while the link is pushed hard, over that limit
+    /// [-]: the excess outweighs part of the damper between motor and link, so that the link is pushed back sooner.
+    /// Tuned on `hil/impact.toml`: with all torque, force 2.9 instead of 2.0 times the rated.
     pub impact_excess_torque: T,
     /// Smoothing rate of the set-point's jerk over the smoothing rate of measured torque [-]: planners send coarse
     /// steps, but no noise. Tuned.
@@ -80,7 +80,7 @@ pub(super) struct FlankThresholds<T> {
     pub braked_speed: i32,
     /// Travel of a landing motor below which the flank has stopped it, over the travel at the landing speed [-]. Tuned.
     pub stopped_travel: T,
-    /// Opening beyond which a flank is lost and a path leads back to it, over the half-gap [-]. Tuned.
+    /// Opening above which a flank counts as lost and the motor is moved back to it, over the half-gap [-]. Tuned.
     pub lost_opening: T,
 }
 
@@ -150,7 +150,8 @@ impl<T: Real> PayloadSwingThresholds<T> {
 
 /// Detector of a swinging torque.
 pub(super) struct TorqueSwingThresholds<T> {
-    /// Torque beyond which it counts as large, over the motor's limit [-]. Tuned on `hil/never-worse.toml`.
+    /// Torque above which a swinging torque counts as large, over the motor's limit [-]. Tuned on
+    /// `hil/never-worse.toml`.
     pub large_torque: T,
     /// Time constant of the loop over the time within which a swinging torque changes from side to side [-]: faster
     /// than any motion that the loop can follow. Tuned on `hil/never-worse.toml`.
@@ -163,8 +164,9 @@ impl<T: Real> TorqueSwingThresholds<T> {
 
 /// Plain control while the link is not seen.
 pub(super) struct PlainThresholds<T> {
-    /// Speed of the link against the set-point beyond which the flank in use gives no distance of motor and link, as
-    /// travel in a time constant of the loop over the half-gap [-]. Tuned.
+    /// Speed of the link against the set-point above which the link counts as pushed, and the distance between motor
+    /// and link is no longer taken from the flank in use; as travel in a time constant of the loop, over the half-gap
+    /// [-]. Tuned.
     pub pushed_link_travel: T,
     /// Smoothing rate of motor less link, over the rate of the loop [-]. Tuned.
     pub lead_smoothing: T,
@@ -200,7 +202,7 @@ pub(super) struct InverseThresholds<T> {
     pub settling_time: T,
     /// Saturation of the time for which a flank is pressed [time constants of the loop]. Chosen.
     pub longest_pressed_time: T,
-    /// Opening of the teeth, and lag of the link, beyond which the link counts as moving to the other flank, over the
+    /// Opening of the teeth, and lag of the link, above which the link counts as moving to the other flank, over the
     /// half-gap [-]. Tuned.
     pub flank_left_opening: T,
 }
@@ -227,7 +229,8 @@ pub(super) struct DemandThresholds<T> {
     /// Smallest accelerating torque for estimating the inertia, over the motor's limit [-]: friction hides smaller
     /// torques. Tuned.
     pub inertia_min_torque: T,
-    /// Standard deviation of unexplained torque, over the motor's limit [-]. Tuned.
+    /// Standard deviation of torque that inertia, gravity and friction do not explain, over the motor's limit [-].
+    /// Tuned.
     pub torque_deviation: T,
     /// Standard deviation of an unknown load, over the motor's limit [-]. Chosen: of ten measurements the
     /// first then weigh most.
@@ -236,7 +239,7 @@ pub(super) struct DemandThresholds<T> {
     pub friction_deviation: T,
     /// Standard deviation of a friction that the data sheet omits, over `torque_deviation` [-]. Chosen.
     pub omitted_friction_deviation: T,
-    /// Share of the demand beyond which the torque has reached the teeth [-]. Tuned.
+    /// Transmitted torque above which the torque counts as having reached the teeth, over the demand [-]. Tuned.
     pub transmitted_share: T,
     /// Bound of the estimated friction, over the motor's limit [-]. Chosen.
     pub max_friction: T,
@@ -258,8 +261,8 @@ impl<T: Real> DemandThresholds<T> {
 
 /// Monitor of the loop (K22) to (K24).
 pub(super) struct MonitorThresholds<T> {
-    /// Change of the error between two judgements beyond the change by its rate that counts as a jump of the set-point,
-    /// over half the lost motion [-]. Tuned.
+    /// Change of the error between two checks, less the change by the rate of the error, above which the set-point has
+    /// jumped, over half the lost motion [-]. Tuned.
     pub set_point_jump: T,
     /// Time after takeover in which the error is granted [time constants of the loop]. Derived: the observer first has
     /// to estimate the link's speed.
@@ -294,7 +297,8 @@ pub(super) struct LimitDesign {
     /// Peak torque over rated torque if neither settings nor motor give less [-]. Data sheet: the least that gear
     /// catalogues allow.
     pub peak_per_rated: f64,
-    /// Largest factor between estimated compliance and the joint file's [-]; estimates beyond are clamped. Chosen.
+    /// Largest factor between the estimated compliance and the compliance in the joint file [-]; larger factors are
+    /// clamped. Chosen.
     pub compliance_ratio: f64,
     /// Largest estimate of half the lost motion, over the guess [-]. Chosen.
     pub widest_gap_ratio: f64,
@@ -372,9 +376,10 @@ pub(super) struct LandingDesign {
     pub rise_time: f64,
     /// Time in which a missed impulse is returned, over the time of a crossing (K16) [-]. Tuned.
     pub recovery_time: f64,
-    /// Opening beyond which a flank opens, over the half-gap [-]. Derived: several times the observer's error.
+    /// Opening above which a flank counts as open, over the half-gap [-]. Derived: several times the observer's error.
     pub opening: f64,
-    /// Opening below which a flank is touched, over the half-gap [-]. Derived: the residual of the observer's errors.
+    /// Opening below which a flank counts as touched, over the half-gap [-]. Derived: the residual of the observer's
+    /// errors.
     pub landed: f64,
 }
 
@@ -391,7 +396,7 @@ pub(super) const LANDING: LandingDesign = LandingDesign {
 /// Conditions of a flank change (K13), at design.
 #[cfg(feature = "design")]
 pub(super) struct SwitchingDesign {
-    /// Planned torque beyond which a change of its sign counts, over the largest torque [-]. Tuned.
+    /// Planned torque above which a change of its sign counts, over the largest torque [-]. Tuned.
     pub planned: f64,
     /// Uncertainty M of a measured torque after an impact, over the largest torque [-]. Tuned.
     pub measured: f64,
@@ -409,7 +414,7 @@ pub(super) struct SwitchingDesign {
     /// Smoothing time of measured torque before decisions [reaction times]. Tuned on `hil/t2b-slow.toml` (15 or 23):
     /// the observer's torques are wrong for a few milliseconds after every impact.
     pub smoothing_time: f64,
-    /// Change of a torque beyond which its smoothing is faster, over the largest torque [-]. Tuned.
+    /// Change of a torque above which the torque is smoothed faster, over the largest torque [-]. Tuned.
     pub large_step: f64,
 }
 
@@ -484,15 +489,15 @@ pub(super) struct MonitorDesign {
     /// Decay of the count while the error is small [1/s]. Measured: a link without friction drifts from flank to flank
     /// fifteen times per second, at a tenth of the error of plain control.
     pub calm_leak: f64,
-    /// Unexplained flank changes beyond which the loop hunts [-]. Tuned on `hil/never-worse.toml`: a joint that follows
-    /// an alternating load leaves a flank as often as some joints that hunt.
+    /// Count of unexplained flank changes above which the loop counts as hunting [-]. Tuned on `hil/never-worse.toml`:
+    /// a joint that follows an alternating load leaves a flank as often as some joints that hunt.
     pub changes: f64,
     /// RMS error that is small, over half the lost motion [-]. Derived: a third of the error without compensation.
     pub calm_error: f64,
     /// Averaging time of the squared error [s]. Tuned.
     pub averaging_time: f64,
-    /// RMS error beyond which the loop hunts, over half the lost motion [-]. Derived: control that ignores the gap
-    /// leaves the link on either flank, at half the lost motion.
+    /// RMS error above which the loop counts as hunting, over half the lost motion [-]. Derived: control that ignores
+    /// the gap leaves the link on either flank, at half the lost motion.
     pub hunting_error: f64,
     /// Additional permitted error, over the deflection of the loop's spring by the demand [-]. Derived: inertia and
     /// load that are 30 % wrong.

@@ -6,7 +6,7 @@ use super::set_point::Stage;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Event {
-    /// Demand of the opposite sign, beyond hysteresis and noise.
+    /// Demand of the opposite sign that exceeds hysteresis and noise.
     DemandTurned = 1,
     /// Demand of the opposite sign in impedance mode, within the hysteresis.
     SpringUndecided = 2,
@@ -40,17 +40,18 @@ impl Event {
 /// Action that follows from an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
-    /// Lays a path to the other flank.
+    /// Starts a path to the other flank.
     CrossOver,
-    /// Lays a path to the same flank.
+    /// Starts a path to the same flank.
     CrossBack,
-    /// Closes on the flank at the landing speed.
+    /// Approaches the flank at the landing speed.
     Land,
     /// Lets the flank carry; the torque of the law rises from zero.
     Carry,
-    /// Lets the torque of the law find the flank; a flank felt beyond the middle of the gap is taken.
+    /// Lets the torque of the law find the flank; a flank that is detected past the middle of the gap becomes the flank
+    /// in use.
     LetSpringFind,
-    /// Lays a new path if it ends clearly sooner.
+    /// Starts a new path if it ends clearly sooner.
     Shorten,
 }
 

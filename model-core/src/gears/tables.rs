@@ -130,13 +130,15 @@ pub struct UnitTable<T: Real> {
     pub length: T,
     /// Carrier speed per 2^-64 turn a tick [rad/s].
     pub carrier_speed: T,
-    /// Angle of the sun beyond the rigid body, per unit of one planet's coordinate, the gap and the wind-up [rad].
+    /// Coefficients of the motor angle relative to the rigid-body motion [rad], per unit of one planet's coordinate, of
+    /// the gap and of the wind-up.
     pub motor_offset: [T; 3],
-    /// Angle of the link beyond the rigid body, per unit of one planet's coordinate, the gap and the wind-up [rad].
+    /// Coefficients of the link angle relative to the rigid-body motion [rad], per unit of one planet's coordinate, of
+    /// the gap and of the wind-up.
     pub link_offset: [T; 3],
 }
 
-/// Rigid body: speed change per tick caused by a torque, in 2^-64 turns a tick per N m.
+/// Gains of the rigid-body motion: change of the carrier speed [2^-64 turns a tick] per tick and N m.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Rigid<T: Real> {

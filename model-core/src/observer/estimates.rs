@@ -157,7 +157,8 @@ pub struct Estimates<T: Real = f32> {
     pub encoder_offset: Estimate<T>,
     /// Torsional compliance from sun to link, meshes included, referred to the output [rad/(N m)].
     pub compliance: Estimate<T>,
-    /// Age of output readings beyond their time stamps, less the same excess of the motor's readings [s].
+    /// Delay of output readings not covered by their time stamps, minus the corresponding delay of the motor's readings
+    /// [s].
     pub skew: Estimate<T>,
     /// Torque bias of the motor: commanded less delivered torque, independent of the direction [N m].
     pub torque_bias: Estimate<T>,

@@ -20,7 +20,7 @@ pub trait FaultUnits: Copy + Debug + PartialEq {
     type Share: Copy + Debug + PartialEq;
     /// Amplitudes of angles, ratios, torques.
     type Real: Copy + Debug + PartialEq;
-    /// Further faults besides the kinds that every user can apply.
+    /// Faults in addition to the kinds that every user can apply.
     type Other: Copy + Debug + PartialEq;
 }
 

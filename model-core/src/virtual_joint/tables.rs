@@ -52,7 +52,7 @@ pub struct SurroundingsTable<T: Real> {
     pub losses: [T; 2],
     /// Half-backlash of the sun's meshes, one for each planet [m].
     pub half_backlash: [T; 5],
-    /// Torque of a sun's mesh at the sun per metre beyond its flank [N m/m].
+    /// Torque of a sun mesh on the sun per metre of deflection past the flank [N m/m].
     pub sun_torque: T,
     /// Torque of the gears on the link, per unit of: sun's torque, wind-up, rate of wind-up [N m].
     pub to_link: [T; 3],
@@ -133,7 +133,7 @@ pub(super) fn encoder_phase(counts_per_turn: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Encoder with the counts per turn given, without errors.
+    /// Error-free encoder with `turn` counts per turn.
     fn encoder(turn: u32) -> EncoderErrorTable<f32> {
         EncoderErrorTable { turn, errors: [0.0; 2], lag: 0.0, phase: encoder_phase(turn.into()) }
     }

@@ -199,9 +199,9 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
     }
 
-    /// Returns true if the joint has moved by a limit. Wrong counts per turn overstate or understate a travel, so that
-    /// the geometric mean of both travels decides; it is right even for exchanged encoders. A motor without an output,
-    /// or beside a stationary output, has its own limit.
+    /// Returns true if the travel of the joint has reached a limit. Wrong counts per turn overstate or understate a
+    /// travel, so that the geometric mean of both travels decides; it is right even for exchanged encoders. A motor
+    /// without an output encoder or with a stationary output has its own limit.
     fn is_far(&self, travel: [i64; 2], limit: [u32; 2]) -> bool {
         let [motor, output] = travel.map(|counts| counts.unsigned_abs().min(MAX_COUNTS));
         let [motor_limit, output_limit] = limit.map(u64::from);

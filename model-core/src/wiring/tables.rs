@@ -51,7 +51,8 @@ pub struct WiringTable<T: Real> {
     pub rest: u32,
     /// Periods of a window over which speed is measured.
     pub window: u32,
-    /// Periods at the full torque after which a leg ends.
+    /// Periods after which a leg at full torque ends although the joint has not travelled far enough, and longest
+    /// braking.
     pub hold: u32,
     /// Periods after which the check ends.
     pub longest: u32,

@@ -18,7 +18,7 @@ use board::device::toolchain::Toolchain;
 use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
-/// A case moved by a method at a rate.
+/// Computation of a case with a method at a step rate.
 pub struct Job<'a> {
     /// The case.
     pub case: &'a Case,
@@ -45,8 +45,8 @@ pub struct InstructionCount {
     pub samples: [u32; 3],
 }
 
-/// Largest flash for the numbers of one image besides the torques of a case, which its jobs share: the rest is code, most of it for five
-/// planets [bytes].
+/// Largest size of the numbers in one image [bytes], not counting the torques of a case, which its jobs share. The rest
+/// of the flash holds code, most of it for five planets.
 const IMAGE_DATA_MAX: usize = 250_000;
 
 /// Runs all jobs; results in their order.

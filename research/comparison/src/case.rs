@@ -62,7 +62,7 @@ pub fn at_rest(joint: &JointParameters) -> RelativeState {
 }
 
 impl Case {
-    /// Scenario whose deflections are all evaluated from a time [s] on.
+    /// Creates the case of a scenario. All deflections are evaluated, from the time `counts_from` [s] on.
     pub fn from_scenario(key: &str, title: &str, scenario: Scenario, sample_rate: u32, counts_from: f64) -> Self {
         Self {
             key: key.into(),

@@ -17,27 +17,27 @@ use report::interruption;
 use report::progress::Progress;
 use report::spectrum::{Mean, Window, amplitudes};
 
-/// For attractors of the table: exponents of chaos come to about 0.0012 (one standard deviation).
+/// Effort for attractors of the table: the standard deviation of Lyapunov exponents is about 0.0012.
 const TABLE_EFFORT: Effort =
     Effort { transient: 300, longest_transient: 1000, alignment: 60, points: 1000, chaotic_periods: 12_000 };
 
-/// For points of a diagram.
+/// Effort for points of a diagram.
 const DIAGRAM_EFFORT: Effort =
     Effort { transient: 200, longest_transient: 600, alignment: 40, points: 200, chaotic_periods: 400 };
 
-/// Poincare points of an attractor without a period that are kept, and among which distinct ones are counted.
+/// Number of Poincare points that are kept of an attractor without a period, and in which distinct points are counted.
 const KEPT_POINTS: usize = 300;
 
-/// Periods of the signal of an attractor without a period.
+/// Length of the signal of an attractor without a period [mesh periods].
 const LONG_SIGNAL: u32 = 512;
 
-/// Periods of the signal of a periodic one, at least, and a whole number of its cycles.
+/// Least length of the signal of a periodic attractor, extended to a whole number of its cycles [mesh periods].
 const SHORT_SIGNAL: u32 = 48;
 
-/// Periods of history that are kept.
+/// Length of the history that is kept [mesh periods].
 const HISTORY_PERIODS: usize = 36;
 
-/// Of the samples of the history one in so many is kept.
+/// Stride of the history: every HISTORY_STRIDE-th sample is kept.
 const HISTORY_STRIDE: usize = 2;
 
 /// Spectra are kept up to this multiple of the mesh frequency.
@@ -200,7 +200,8 @@ fn history(signal: &Signal) -> History {
 }
 
 fn spectrum(signal: &Signal, window: Window) -> SpectrumRecord {
-    // A line lies at so many cycles in the whole stretch, which is so many mesh periods long.
+    // The index of a line is its number of cycles in the whole signal; `periods` is the length of the signal in mesh
+    // periods.
     let periods = signal.position.len() as f64 / SAMPLES as f64;
     let mut amplitude = amplitudes(&signal.position, window, Mean::Plain);
     let frequencies = (0..amplitude.len()).map(|line| line as f64 / periods);

@@ -307,11 +307,12 @@ enum JointStage
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // A flank carries, or the joint needs none and the motor rests in the middle of the gap.
+  // A flank carries the demand; or friction holds the link at its set-point, and the motor waits in the middle of
+  // the gap.
   JOINT_STAGE_TOUCHING = 0,
-  // Motion through the gap towards a flank.
+  // The motor moves through the gap towards a flank.
   JOINT_STAGE_CROSSING = 1,
-  // Closing on a flank at a small speed.
+  // The motor approaches a flank at a small speed.
   JOINT_STAGE_LANDING = 2,
   // Control without compensation: the gap is not observable.
   JOINT_STAGE_PLAIN = 3,
@@ -496,7 +497,7 @@ typedef struct JointEstimates {
   struct JointEstimate encoder_offset_rad;
   // Torsional compliance from sun to link, at the output.
   struct JointEstimate compliance_rad_per_Nm;
-  // Age of output readings beyond their time stamp, less the motor encoder's.
+  // Delay of output readings not covered by their time stamps, minus the corresponding delay of the motor encoder.
   struct JointEstimate skew_s;
   // Torque that the motor loses in either direction.
   struct JointEstimate torque_bias_Nm;

@@ -85,12 +85,12 @@ fn check_fit(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bo
     Ok(forced)
 }
 
-/// Requirements of a controller's image besides its joint.
+/// Settings of a controller's image, in addition to the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
     /// Control rate, equal to the tick rate [Hz].
     pub rate: u32,
-    /// Bandwidth of the loop [rad/s]; if `None`, derived from the joint as told to the controller.
+    /// Bandwidth of the loop [rad/s]; if `None`, derived from the joint that the controller assumes.
     pub bandwidth: Option<f64>,
     /// Limit of the torque through the teeth in position mode, referred to the link [N m]; if `None`, the default of
     /// the firmware's build.

@@ -13,8 +13,8 @@ use report::failure::{Failure, Outcome};
 
 /// Worst-case instructions of a tick of the role `observer`. The counting program checks this bound and the next.
 pub const OBSERVER_INSTRUCTIONS: u32 = 6200;
-/// Worst-case instructions of a tick of the role `loop` besides a step of the joint in which every mesh crosses.
-/// Largest count in a run: 5,768.
+/// Worst-case instructions of a tick of the role `loop` without its step of the joint, for which the step's own worst
+/// case is added. Largest count in a run: 5,768.
 const LOOP_INSTRUCTIONS: u32 = 6100;
 /// Part of the period that an observer may take; the rest belongs to the motor controller on the same chip.
 const OBSERVER_SHARE: f64 = 0.75;
@@ -42,9 +42,9 @@ pub enum Obstacle {
 pub struct TickTime {
     /// Instructions of the tick.
     pub instructions: f64,
-    /// Part of the period that the tick takes.
+    /// Duration of the tick over the period.
     pub part: f64,
-    /// Part of the period that the tick may take.
+    /// Largest allowed duration of the tick over the period.
     pub share: f64,
 }
 

@@ -34,8 +34,8 @@ const COMMAND_TIMEOUT: f64 = 0.1;
 const KEEP_ALIVE_INTERVAL: Duration = Duration::from_millis(30);
 /// Limit of schedules with commands in flight: the board's receive buffer holds two of the longest.
 const SCHEDULES_IN_FLIGHT: usize = 2;
-/// Limit of empty schedules (at most 16 bytes) in flight besides: acknowledgements are late while a slow line carries
-/// samples.
+/// Limit of empty schedules (at most 16 bytes) in flight, in addition to SCHEDULES_IN_FLIGHT: acknowledgements are late
+/// while a slow line carries samples.
 const KEEP_ALIVES_IN_FLIGHT: usize = 8;
 /// Time between two hello messages to a board that has not answered yet.
 const HELLO_INTERVAL: Duration = Duration::from_millis(100);

@@ -117,8 +117,8 @@ impl<'p> StreamProgress<'p> {
         }
     }
 
-    /// Returns the next schedule if the board has room for it besides those in flight. An empty schedule requests the
-    /// board's tick when the stream waits for it, and keeps the command timeout from expiring.
+    /// Returns the next schedule if the board has room for it in addition to the schedules in flight. An empty schedule
+    /// requests the board's tick when the stream waits for it, and keeps the command timeout from expiring.
     fn next_schedule(&mut self, capacity: usize, in_flight: usize) -> Option<Schedule> {
         let commands = &self.profile.commands;
         // A command leaves the queue with the step that it is for.

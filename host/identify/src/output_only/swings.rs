@@ -6,7 +6,7 @@ use crate::statistics::{quantile_of, range_of};
 /// Motion back from a turning point that confirms the turn: share of the range, and counts; the larger applies.
 const TURN_SHARE: f64 = 0.001;
 const TURN_COUNTS: f64 = 6.0;
-/// Torque beyond which its sign counts, over the largest torque [-].
+/// Least torque whose sign is used, over the largest torque [-].
 const SIGN_TORQUE_SHARE: f64 = 0.1;
 /// Share of each half of a swing excluded next to its turning point, where friction sticks [-].
 const TURN_EXCLUDED_SHARE: f64 = 0.1;

@@ -177,7 +177,7 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
     });
     let all = motor + around.cogging_torque + load / (ratio * around.efficiency);
     let each = motor.max(around.cogging_torque) / drive;
-    // A complaint about one friction needs no complaint about the sum.
+    // If one friction alone is already reported, the sum is not reported as well.
     if each <= 1.0 && load <= rated {
         judge.check_figure(&motor_keys, all / limit, Limits::above(1.0, 1.0), |_, key| {
             let message = format!(

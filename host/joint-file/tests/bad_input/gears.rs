@@ -74,7 +74,7 @@ fn not_assembling_is_rejected() {
     assert_eq!(help, "these teeth take 3 planets, or choose others");
 }
 
-/// Only problem whose message has `part`.
+/// Returns message, underlined text and help of the only problem whose message contains `part`.
 fn only_among(text: &str, part: &str) -> (String, String, String) {
     let found: Vec<_> = problems(text).into_iter().filter(|problem| problem.message.contains(part)).collect();
     assert_eq!(found.len(), 1, "{found:#?}");

@@ -19,7 +19,7 @@ fn problems(text: &str) -> Vec<Problem> {
     read(text).expect_err("the file is spoilt").0
 }
 
-/// Only problem: message, underlined text, and help.
+/// Returns message, underlined text and help of the only problem of a file.
 fn only(text: &str) -> (String, String, String) {
     let problems = problems(text);
     assert_eq!(problems.len(), 1, "{problems:#?}");

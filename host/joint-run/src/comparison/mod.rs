@@ -54,7 +54,8 @@ pub struct QuantityError {
     pub limit: f64,
 }
 
-/// Starts two references on the torques of a run, one of them disturbed.
+/// Starts two reference simulations with the torques of a run. One of them is disturbed, so that the growth of a small
+/// error is known.
 pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[Command], u32)) -> PendingReferences {
     let (commands, ticks) = run;
     let last = ticks.min((COMPARISON_TIME_MAX * f64::from(tick_rate)) as u32);

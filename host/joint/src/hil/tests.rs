@@ -113,8 +113,8 @@ fn board_request(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
 
 /// Rejects arguments of test files if a joint is named.
 pub fn reject_test_arguments(arguments: &Arguments) -> Outcome<()> {
-    // Without a file, on the emulated board, the tests that come with the program follow, so `--full` and `--junit`
-    // apply.
+    // `joint hil` without a file, a port or `--check` also runs the bundled tests; only then do `--full` and `--junit`
+    // apply to a joint.
     let alone = arguments.file.is_some() || arguments.line.port.is_some() || arguments.check;
     let test_arguments = [
         ("host", arguments.host),

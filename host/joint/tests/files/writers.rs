@@ -104,12 +104,13 @@ impl Writer {
         Self::Tables,
     ];
 
-    /// Returns true for commands of a second or more, which a short run repeats less often.
+    /// Returns true for commands that take a second or more; a short run of the test repeats them less often.
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Identify | Self::Simulate)
     }
 
-    /// File of a command that never overwrites: an existing file is complete.
+    /// Returns the file that the command writes, for commands that never overwrite a file: whenever that file exists,
+    /// it is complete.
     pub fn writes_once(self) -> Option<&'static str> {
         match self {
             Self::Simulate => Some("log.csv"),

@@ -21,7 +21,7 @@ impl Reference {
         let whole_turns = self.teeth_passed as f64 / equations.ring_teeth;
         let sun_lever = equations.sun_lever;
         let lever = equations.carrier_lever;
-        // Carrier angle of the teeth taken off the coordinates [rad].
+        // Carrier angle of the passed teeth, which were subtracted from the coordinates [rad].
         let counted = TAU * whole_turns;
         let internal = equations.internal_forces(time, state);
 

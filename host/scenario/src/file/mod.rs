@@ -68,11 +68,11 @@ pub struct TestFile {
     pub width_guess: Option<NumberOrRange>,
     /// False hides the output encoder from the observer.
     pub output_encoder: bool,
-    /// Runs each seed twice; the second run starts from the memory of the first.
+    /// True if each seed runs twice, and the second run starts with the parameters that the first run saved.
     pub from_memory: bool,
     /// Impedance set-points in place of positions.
     pub gains: Option<Gains>,
-    /// Torques on the link besides the profile's.
+    /// Torques on the link, added to the load of the profile.
     pub disturbances: Vec<DisturbanceSpec>,
     /// Injected faults.
     pub faults: Vec<Fault>,

@@ -15,9 +15,9 @@ pub struct MotionProfile {
     pub trajectory: Trajectory,
     /// Load on the link.
     pub load: ProfileLoad,
-    /// Dry friction of the link over the rated output torque, in place of the joint's [-].
+    /// Dry friction of the link over the rated output torque [-]; replaces the friction in the joint file.
     pub friction: Option<f64>,
-    /// Weight of the link over the rated output torque, in place of the joint's [-].
+    /// Gravity torque of the link over the rated output torque [-]; replaces the gravity torque in the joint file.
     pub gravity: Option<f64>,
     /// Default length of a run [s].
     pub duration: f64,
@@ -171,7 +171,7 @@ impl MotionProfile {
             "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..default },
             // The link keeps its stated friction and weight.
             "any" => Self { trajectory: Trajectory::Any, gravity: None, ..default },
-            // A recording has its own load, or none.
+            // A recorded motion carries no gravity torque by default: its load is recorded with it or absent.
             _ => Self { gravity: None, ..default },
         }
     }

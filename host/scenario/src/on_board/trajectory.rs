@@ -13,10 +13,11 @@ use crate::file::TestFile;
 use crate::port::command;
 use crate::set_point_source::SetPointSource;
 
-/// Largest length of a polynomial [s]: a motion of 20 Hz is matched to a millionth.
+/// Largest length of a polynomial [s]: its relative error for a motion of 20 Hz is one millionth.
 const MAX_SEGMENT: f64 = 5e-3;
 
-/// Knots of a test on the observer's scale of the link, which reads `zero` at the joint's angle zero [turns].
+/// Returns the knots of a test's motion in the observer's link angle, which is `zero` [turns] when the link is at angle
+/// zero of the joint.
 pub fn knots(file: &TestFile, case: &Case, designed: &Designed, zero: f64) -> Vec<Knot> {
     let rate = f64::from(case.nominal_surroundings.control_rate);
     let periods = (file.duration * rate).round() as u32;

@@ -27,10 +27,10 @@ fn state(tables: &CompensationTables<f32>, part: f32) -> LoopState<f32> {
 /// Control periods between two judgements.
 const TURN: usize = 3;
 
-/// Periods in which an error grows to its size: too slow for a jump of the set-point.
+/// Control periods in which an error grows to its final size; too slow to count as a jump of the set-point.
 const GROWS: u32 = 500;
 
-/// Returns a monitor after a second of a good loop: nothing is granted for the takeover.
+/// Returns a monitor after a second of good control: the tolerance for the takeover has ended.
 fn settled(tables: &CompensationTables<f32>) -> LoopMonitor<f32> {
     let (good, mut watch) = (state(tables, 0.0), LoopMonitor::new(tables));
     let watched = MonitorInput { planned: 1.0, load: 0.0, has_error: true, external_impact: false };
@@ -38,8 +38,8 @@ fn settled(tables: &CompensationTables<f32>) -> LoopMonitor<f32> {
     watch
 }
 
-/// Returns the periods after which the monitor trips while the error grows to a part of half the lost motion and the
-/// flank changes every `dwell` periods under a demand; `None` after 10 s.
+/// Returns the control period in which the monitor trips; `None` if it does not within 10 s. The error grows to `part`
+/// of half the lost motion, the flank changes every `dwell` periods, and `planned` is the demand on each flank.
 fn trips_after(part: f32, dwell: u32, planned: impl Fn(Flank) -> f32) -> Option<u32> {
     let tables = tables();
     let mut watch = settled(&tables);

@@ -4,7 +4,7 @@ use crate::gears::design::DesignError;
 use crate::observer::design::NO_LIMIT;
 use parameters::Surroundings;
 
-/// Settings of a compensation besides the joint. The joint's own half-backlash is a first guess.
+/// Settings of a compensation, in addition to the joint. The half-backlash of the joint is an initial guess.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompensationSettings {
     /// Control periods per second [Hz].

@@ -1,4 +1,5 @@
-//! Settings of the observer besides the joint: data-sheet figures with their uncertainties, and checks of their ranges.
+//! Settings of the observer, in addition to the joint: data-sheet figures with their uncertainties, and checks of their
+//! ranges.
 
 use super::thresholds::LEARNING_DESIGN;
 use core::f64::consts::TAU;
@@ -35,7 +36,7 @@ pub struct EncoderSettings {
     pub harmonic_error: f64,
 }
 
-/// Settings of the observer besides the joint. The joint's half-backlash and compliance are initial guesses.
+/// Settings of the observer, in addition to the joint. The joint's half-backlash and compliance are initial guesses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObserverSettings {
     /// Control rate [Hz].
@@ -68,7 +69,7 @@ pub struct ObserverSettings {
     pub backlash_uncertainty: f64,
     /// Prior standard deviation of the compliance, over its guess [-].
     pub compliance_uncertainty: f64,
-    /// Expected age of output readings beyond their time stamps, less the same excess of the motor's readings [s].
+    /// Expected delay of output readings not covered by their time stamps, minus that of the motor readings [s].
     pub skew: f64,
     /// Prior standard deviation of the skew [s].
     pub skew_uncertainty: f64,

@@ -72,8 +72,8 @@ thresholds! {
         /// Hz. A link that is stopped faster, as by steel on steel, is mistaken for a frozen encoder: counts alone
         /// cannot distinguish the two (`docs/theory/observer.md`, Limits).
         link_stop_time: f64 = 1e-3,
-        /// Largest braking torque of teeth and load on the link besides obstacles, over the motor's largest torque at
-        /// the output [-].
+        /// Largest torque with which teeth and load brake the link without an obstacle, over the motor's largest torque
+        /// at the output [-].
         link_brake: f64 = 2.0,
         /// Time for which a stationary motor is judged by its last speed [s]: noise accumulates over longer times.
         motor_speed_kept: f64 = 3e-3,

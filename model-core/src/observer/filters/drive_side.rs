@@ -24,7 +24,7 @@ use crate::observer::tables::{CurrentTable, DriveTable, MOST_DELAY};
 /// State of the motor side.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct DriveSide<T: Real> {
-    /// Angle beyond the counts [rad].
+    /// Motor angle minus the angle of its counts [rad].
     pub angle_residual: T,
     /// Motor speed [rad/s].
     pub speed: T,

@@ -99,9 +99,9 @@ pub struct LastMotion<T: Real> {
 enum DeflectionRange {
     /// Between the flanks, or beyond a flank by at most the wind-up.
     Possible,
-    /// Farther beyond a flank, by no more than wear.
+    /// Past a flank by more than the wind-up, but by no more than wear.
     Worn,
-    /// Beyond wear: no teeth allow the deflection.
+    /// Past a flank by more than wear explains: teeth cannot deflect that far.
     Impossible,
 }
 

@@ -114,7 +114,7 @@ impl<T: Real, const P: usize> Batch<T, P> {
             self.begin_on(None);
             return false;
         };
-        // A dwell stays on one flank, even while no force shows the flank.
+        // The flank of a dwell does not change: while the force shows no flank, the flank of the batch is kept.
         let known_flank = flank.or(self.contact.flank);
         let is_other_flank = known_flank != self.contact.flank && self.contact.flank.is_some();
         if is_other_flank || self.intervals >= length {

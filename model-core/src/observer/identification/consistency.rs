@@ -7,7 +7,7 @@ use crate::gears::Flank;
 /// Evidence against the estimated parameters.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Consistency {
-    /// Consecutive intervals with force between the flanks.
+    /// Consecutive intervals in which teeth transmit force between the estimated flanks.
     gap_force_intervals: u8,
     /// Consecutive outliers.
     outliers: u8,

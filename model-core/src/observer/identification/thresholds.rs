@@ -13,8 +13,8 @@ thresholds! {
         outliers_until_half_gap: u8 = 2,
         /// Consecutive outliers after which all parameters count as wrong.
         outliers_until_all: u8 = 12,
-        /// Learning intervals with force between the flanks after which the half-gap counts as wrong. Derived: three
-        /// batches of 8 intervals.
+        /// Consecutive learning intervals in which teeth transmit force between the estimated flanks, after which the
+        /// half-gap counts as wrong. Derived: three batches of 8 intervals.
         gap_force_intervals: u8 = 24,
         /// Errors of a trusted half-gap that are attributed to its variation around the turn before another cause is
         /// assumed.
@@ -55,9 +55,9 @@ thresholds! {
         /// teeth the load would have reproduced the motor's motion to one part in 64, as the deflection may change by
         /// an eighth of the gap meanwhile.
         departure: i32 = 8,
-        /// Smallest half-gap proven by a crossing, over the observed span [-]. Derived: a crossing needs four standard
-        /// deviations, so that one deviation is at most a quarter of the span. The remainder is two half-gaps of 3/8
-        /// each.
+        /// Lower limit of the half-gap after a crossing, over the observed span of the crossing [-]. Derived: a
+        /// crossing is detected if its span exceeds four standard deviations. The span less one standard deviation is
+        /// then at least 3/4 of the span, which is two half-gaps of 3/8 each.
         proven_share: T = T::THREE_EIGHTHS,
         /// Largest change of the deflection during a dwell on one flank, over the gap [-].
         max_drift: T = T::EIGHTH,
@@ -76,8 +76,8 @@ thresholds! {
         /// the loop takes up to 0.15 s to bring the link back at full torque, and the filters carry readings from
         /// before the fault declaration.
         probation: u16 = 500,
-        /// Gain per interval of the filter for the steady mesh force [-]; its noise variance is that of a mean of seven
-        /// intervals.
+        /// Gain per interval of the filter for the steady mesh force [-]; the filter reduces the noise variance to 1/7,
+        /// as a mean of seven intervals does.
         steady_gain: T = T::QUARTER,
         /// Deviation of the transmission error, over the half-gap, above which dwells on an unknown flank update the
         /// transmission error first [-]: the error could hide a crossing; see `TravelDetector::distinguishes_rest`.
@@ -132,11 +132,11 @@ thresholds! {
         initial_variation: T = T::QUARTER,
         /// Weight of the initial variation [rad^2].
         initial_weight: T = T::QUARTER,
-        /// Largest weight of the sums, which are halved beyond, as gears wear [rad^2].
+        /// Largest weight of the sums [rad^2]; above it the sums are halved, because gears wear.
         max_weight: T = T::SIX,
         /// Least angle after which a dwell shows the variation [rad].
         min_angle: T = T::QUARTER,
-        /// Angle beyond which the variance grows no further [rad].
+        /// Angle above which the variance no longer grows [rad].
         max_angle: T = T::TWO,
     }
 }
@@ -146,9 +146,11 @@ thresholds! {
     OUTLIER: OutlierThresholds {
         /// Innovation of the cogging estimate above which a sample is an outlier [standard deviations].
         cogging_sigma: i32 = 5,
-        /// Innovation of bias and friction above which a force was not measured in an open gap [standard deviations].
+        /// Innovation of bias and friction above which a force sample is rejected, because the gap was not open
+        /// [standard deviations].
         bias_sigma: i32 = 4,
-        /// Innovation of the mobility above which another force acted on the link [standard deviations].
+        /// Innovation of the mobility above which a sample is rejected, because another force acted on the link
+        /// [standard deviations].
         inertia_sigma: i32 = 4,
     }
 }

@@ -293,7 +293,7 @@ pub struct SupervisorTable<T: Real> {
     pub output_brake: T,
     /// Half of the motor's deceleration per newton metre [counts/(period^2 N m)].
     pub motor_brake: T,
-    /// Braking torque on the motor besides its own torque: bias and dry friction [N m].
+    /// Braking torque on the motor by bias and dry friction, in addition to the commanded torque [N m].
     pub motor_drag: T,
     /// Motor counts per output count.
     pub motor_counts: T,
@@ -314,7 +314,7 @@ pub struct SupervisorTable<T: Real> {
     pub trusted_after: u16,
     /// Least travel of an output encoder that proves motion [2^-32 turns].
     pub moved: u32,
-    /// Margin beyond the possible range, for dynamics and estimation errors [m].
+    /// Margin on either side of the possible range, for dynamics and estimation errors [m].
     pub margin: T,
     /// Largest standard deviation of a valid gap coordinate, over the gap 4b [-].
     pub widest_part: T,

@@ -18,9 +18,9 @@
 //! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::silent_output_is_reported_and_readmitted` |
 //! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | an encoder that froze in slow motion or at rest | `observer faults::motor_travel_reveals_frozen_output` |
 //! | 6 | a deflection that no teeth allow | out of range for 4 ms, longer than impacts ring | all other faults: slow slip, missing counts | `observer faults::lost_counts_keep_half_backlash_positive` |
-//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`identification::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::narrowing_output_is_excluded` |
+//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`identification::Outcome::OutputEncoderFault`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::narrowing_output_is_excluded` |
 //!
-//! [`identification::Outcome::EncoderFails`]: crate::observer::identification::Outcome::EncoderFails
+//! [`identification::Outcome::OutputEncoderFault`]: crate::observer::identification::Outcome::OutputEncoderFault
 
 use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
 use super::thresholds::OUTPUT_FAULT;

@@ -798,7 +798,11 @@ const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
         &["the torque of this log is", "a current"],
     ),
     ("a torque with an offset", |rows| each(rows, |row| row[3] += 0.6), &["a constant torque of", "zero"]),
-    ("a torque backwards in time", |rows| backwards(rows), &["friction of the motor is negative", "time runs backwards"]),
+    (
+        "a torque backwards in time",
+        |rows| backwards(rows),
+        &["friction of the motor is negative", "time runs backwards"],
+    ),
     (
         "an output that has slipped",
         |rows| slipped(rows, 100.0),

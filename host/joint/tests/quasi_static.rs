@@ -333,7 +333,7 @@ fn stated_option_not_requested_again() {
         )
         .collect();
     let said = identify(folder.path(), &wrapped, &["--quasi-static", "--output-units-per-turn", "1500"]);
-    assert!(said.err.contains("another number than the 1500 that --output-units-per-turn states"), "{}", said.err);
+    assert!(said.err.contains("another number than the 1500 stated by --output-units-per-turn"), "{}", said.err);
     let geared = with_torque(&sweeps, ",", |one| one.way);
     let all =
         ["--quasi-static", "--gear-ratio", "9", "--output-units-per-turn", "16384", "--motor-units-per-turn", "8192"];

@@ -173,7 +173,7 @@ fn lost_schedule_is_not_a_good_run() {
 #[test]
 fn trip_ends_run_with_message() {
     let (failure, recording) = failure(Misbehaviour::TripAt(4_000, Trip::NotFinite { tick: 4_000 }));
-    assert!(failure.message().contains("not finite"), "{failure}");
+    assert!(failure.message().contains("no longer finite"), "{failure}");
     assert!(failure.message().contains("tick 4000"), "{failure}");
     assert_eq!(recording.trips, [Trip::NotFinite { tick: 4_000 }]);
     assert_eq!(failure.exit_code(), 1);

@@ -173,8 +173,8 @@ fn impossible_grid_writes_nothing() {
     };
     refused(&[], &["--vary"]);
     refused(&["half_backlash_um=0:150:0"], &["never arrives"]);
-    refused(&["half_backlash_um=0:150:-1"], &["no point", "0:150:1"]);
-    refused(&["half_backlash_um=150:0:1"], &["no point", "150:0:-1"]);
+    refused(&["half_backlash_um=0:150:-1"], &["no value", "0:150:1"]);
+    refused(&["half_backlash_um=150:0:1"], &["no value", "150:0:-1"]);
     refused(&["half_backlash_um=0:150:NaN"], &["step is NaN"]);
     refused(&["half_backlash_um=0:inf:1"], &["to is inf"]);
     refused(&["half_backlash_um=0:1000:0.000000001"], &["1000000000001 values", "a step of"]);

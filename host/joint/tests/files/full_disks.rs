@@ -91,6 +91,7 @@ fn check_full_disk(writer: Writer) {
 }
 
 #[test]
+#[ignore = "half a minute and more: .ci/attack"]
 fn full_disk_every_folder_writer() {
     Writer::TO_FOLDERS.into_iter().for_each(check_full_disk);
 }

@@ -1,13 +1,15 @@
 //! Imports between the folders of a crate: every path that begins with `crate`, `super` or `self` and leads through
 //! modules of the same crate. A module is a file, `name.rs` or `name/mod.rs`.
 //!
-//! Siblings of one folder must not import one another in a cycle; a folder's own `mod.rs` is left out, because it hands
+//! Tests are left out. Siblings of one folder must not import one another in a cycle; a folder's own `mod.rs` is left out, because it hands
 //! on what its children define. An item that a `mod.rs` hands on counts as an item of that `mod.rs`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
+
+use crate::size::is_test;
 
 /// Names from the root of a crate to a module.
 type ModulePath = Vec<String>;
@@ -80,11 +82,11 @@ impl Imports {
     }
 }
 
-/// Module of a file, from its path below the root's folder; `None` for programs in `bin`.
+/// Module of a file, from its path below the root's folder; `None` for programs in `bin` and for files of tests.
 fn module_of(path: &Path) -> Option<ModulePath> {
     let mut names: ModulePath =
         path.with_extension("").components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
-    if names.first().is_some_and(|name| name == "bin") {
+    if names.first().is_some_and(|name| name == "bin") || names.iter().any(|name| is_test(name)) {
         return None;
     }
     if names.last().is_some_and(|name| name == "mod") || ["lib", "main"].iter().any(|root| names == [*root]) {
@@ -110,7 +112,9 @@ fn collect(tokens: TokenStream, depth: usize, found: &mut Vec<(usize, ModulePath
         if first.as_deref() == Some("pub") && group(&tokens, at + 1, Delimiter::Parenthesis).is_some() {
             at += 2;
         } else if first.as_deref() == Some("mod") && group(&tokens, at + 2, Delimiter::Brace).is_some() {
-            collect(group(&tokens, at + 2, Delimiter::Brace).unwrap_or_default(), depth + 1, found);
+            if !word(at + 1).is_some_and(|name| is_test(&name)) {
+                collect(group(&tokens, at + 2, Delimiter::Brace).unwrap_or_default(), depth + 1, found);
+            }
             at += 3;
         } else if first.as_deref().is_some_and(|it| ["crate", "super", "self"].contains(&it)) && separator(at + 1) {
             let mut path = vec![];
@@ -244,7 +248,7 @@ mod tests {
             "use crate::{c, a};",
             "fn g() { super::a::f() }",
             "fn g() { println!(\"{:?}\", super::a::f()) }",
-            "mod tests { use super::super::a::f; }",
+            "mod inner { use super::super::a::f; }",
             "macro_rules! n { () => { $crate::a::f() } }",
         ] {
             let found = read(b).cycles();
@@ -259,7 +263,8 @@ mod tests {
             "// crate::a::f",
             "fn g() { println!(\"crate::a::f\") }",
             "pub(in crate::a) fn g() {}",
-            "mod tests { use super::a; }",
+            "mod inner { use super::a; }",
+            "mod tests { use super::super::a::f; }",
         ] {
             assert!(read(b).cycles().is_empty(), "{b}");
         }

@@ -22,7 +22,7 @@ pub fn sizes(member: &Member, files: &[(PathBuf, usize)]) -> BTreeMap<String, us
     for (path, lines) in files {
         let inside = path.strip_prefix(&member.folder).unwrap_or(path);
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let tests = name == "tests" || name.ends_with("_tests");
+        let tests = is_test(&name);
         if tests || !by_subject && (inside.starts_with("tests") || inside.starts_with("benches")) {
             continue;
         }
@@ -31,6 +31,11 @@ pub fn sizes(member: &Member, files: &[(PathBuf, usize)]) -> BTreeMap<String, us
         *sizes.entry(subject.display().to_string()).or_insert(0) += lines;
     }
     sizes
+}
+
+/// True for the name of a file that only tests need: `tests`, `x_tests`, `test_x`.
+pub fn is_test(name: &str) -> bool {
+    name == "tests" || name.ends_with("_tests") || name.starts_with("test_")
 }
 
 /// Lines of a source without its unit tests, which stand at its end.

@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(of(Bound::AtMost(2.0), Some(1.0), Some(1.0)), None);
         assert_eq!(
             of(Bound::AtMost(2.0), Some(1.0), Some(2.5)).unwrap(),
-            "t2: rms 1 to 2.5 (≤ 2): worse by 75.0 % of the bound, bound broken"
+            "t2: rms 1 to 2.500 (≤ 2): worse by 75.0 % of the bound, bound broken"
         );
         assert!(
             of(Bound::AtLeast(2.0), Some(1.0), Some(2.5))

@@ -40,6 +40,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `design` | the modules `design`: f64, standard library; for a host or a build script |
+//! | `sensitivity` | thresholds that the environment variable `JOINT_THRESHOLD` multiplies: std, slower, for research |
 //! | `serde` | `Serialize` and `Deserialize` of the virtual joint's faults |
 //!
 //! # From C and from flash
@@ -63,6 +64,13 @@ pub mod observer;
 pub mod virtual_joint;
 pub mod width_probe;
 pub mod wiring;
+
+/// Thresholds of observer, compensation, width probe and wiring check.
+#[cfg(feature = "sensitivity")]
+pub fn thresholds() -> std::vec::Vec<numbers::sensitivity::Threshold> {
+    [observer::thresholds(), compensation::thresholds::list(), width_probe::thresholds(), wiring::thresholds::list()]
+        .concat()
+}
 
 pub use compensation::{Command, ControlOutput, ImpedancePoint, Motion, Position, Stage};
 pub use controller::{Answer, Controller, ControllerDesign};

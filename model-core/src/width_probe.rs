@@ -20,6 +20,12 @@ thresholds! {
     }
 }
 
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn thresholds() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [ProbeThresholds::<f64>::TUNED.list()].concat()
+}
+
 /// Rests of a probe: sign and multiple of the single torque.
 const RESTS: [(i32, i32); 6] = [(1, 1), (1, 2), (-1, 1), (-1, 2), (1, 1), (1, 2)];
 

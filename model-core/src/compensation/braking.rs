@@ -71,7 +71,7 @@ pub(super) struct BrakingLimit<T: Real> {
 }
 
 impl<T: Real> BrakingLimit<T> {
-    const THRESHOLDS: BrakingThresholds<T> = BrakingThresholds::VALUES;
+    const THRESHOLDS: BrakingThresholds<T> = BrakingThresholds::TUNED;
 
     /// Computes braking torques and inertia from the estimates.
     pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, state: &LoopState<T>) -> Self {

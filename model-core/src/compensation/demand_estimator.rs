@@ -52,7 +52,7 @@ struct PlannedTorque<T: Real> {
 }
 
 impl<T: Real> DemandEstimator<T> {
-    const THRESHOLDS: DemandThresholds<T> = DemandThresholds::VALUES;
+    const THRESHOLDS: DemandThresholds<T> = DemandThresholds::TUNED;
 
     /// Starts from the designed values.
     pub fn new(tables: &CompensationTables<T>) -> Self {
@@ -160,7 +160,7 @@ impl<T: Real> DemandEstimator<T> {
             let correction = T::TWO * share * (excess * designed / self.peak_square);
             let link = tables.body.load_share;
             let [lightest, heaviest] =
-                EstimateBounds::<T>::VALUES.link_inertia_ratio.map(|ratio| T::ONE + link * (ratio - T::ONE));
+                EstimateBounds::<T>::TUNED.link_inertia_ratio.map(|ratio| T::ONE + link * (ratio - T::ONE));
             self.inertia = clamp(self.inertia + correction, lightest, heaviest);
         }
         // At rest friction may hold any part of the torque.

@@ -23,7 +23,7 @@ pub(super) struct Easing<T: Real> {
 }
 
 impl<T: Real> Easing<T> {
-    const THRESHOLDS: EasingThresholds<T> = EasingThresholds::VALUES;
+    const THRESHOLDS: EasingThresholds<T> = EasingThresholds::TUNED;
 
     pub fn new() -> Self {
         Self { load: T::ZERO, steady_time: T::ZERO, start_error: None, gave_way: false }

@@ -61,7 +61,7 @@ pub(super) struct FlankControl<T: Real> {
 }
 
 impl<T: Real> FlankControl<T> {
-    const THRESHOLDS: FlankThresholds<T> = FlankThresholds::VALUES;
+    const THRESHOLDS: FlankThresholds<T> = FlankThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {

@@ -61,7 +61,7 @@ pub(super) struct BacklashInverse<T: Real> {
 }
 
 impl<T: Real> BacklashInverse<T> {
-    const THRESHOLDS: InverseThresholds<T> = InverseThresholds::VALUES;
+    const THRESHOLDS: InverseThresholds<T> = InverseThresholds::TUNED;
 
     pub fn new(tables: &CompensationTables<T>) -> Self {
         Self {

@@ -50,7 +50,7 @@ struct Creep<T: Real> {
 }
 
 impl<T: Real> LoadModel<T> {
-    const THRESHOLDS: LoadThresholds<T> = LoadThresholds::VALUES;
+    const THRESHOLDS: LoadThresholds<T> = LoadThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {

@@ -183,7 +183,7 @@ fn stiffness<T: Real>(tables: &CompensationTables<T>, estimates: &Estimates<T>) 
 
 /// Inertia of motor and link; the link's is the designed one until it is estimated [kg m^2].
 fn inertia<T: Real>(tables: &CompensationTables<T>, estimates: &Estimates<T>) -> T {
-    let [lightest, heaviest] = EstimateBounds::<T>::VALUES.link_inertia_ratio;
+    let [lightest, heaviest] = EstimateBounds::<T>::TUNED.link_inertia_ratio;
     let estimated = &estimates.link_inertia_ratio;
     let ratio = if estimated.valid { clamp(estimated.value, lightest, heaviest) } else { T::ONE };
     tables.body.motor_inertia + ratio * tables.body.load_inertia

@@ -48,7 +48,7 @@ mod step;
 pub mod tables;
 #[cfg(test)]
 mod test_bench;
-mod thresholds;
+pub(super) mod thresholds;
 mod torque_swing;
 pub mod transitions;
 

@@ -71,7 +71,7 @@ pub(super) struct MonitorInput<T: Real> {
 }
 
 impl<T: Real> LoopMonitor<T> {
-    const THRESHOLDS: MonitorThresholds<T> = MonitorThresholds::VALUES;
+    const THRESHOLDS: MonitorThresholds<T> = MonitorThresholds::TUNED;
 
     pub fn new(tables: &CompensationTables<T>) -> Self {
         Self {

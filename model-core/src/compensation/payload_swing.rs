@@ -29,7 +29,7 @@ pub(super) struct PayloadSwing<T: Real> {
 }
 
 impl<T: Real> PayloadSwing<T> {
-    const THRESHOLDS: PayloadSwingThresholds<T> = PayloadSwingThresholds::VALUES;
+    const THRESHOLDS: PayloadSwingThresholds<T> = PayloadSwingThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {

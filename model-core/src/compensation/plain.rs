@@ -30,7 +30,7 @@ pub(super) struct PlainControl<T: Real> {
 }
 
 impl<T: Real> PlainControl<T> {
-    const THRESHOLDS: PlainThresholds<T> = PlainThresholds::VALUES;
+    const THRESHOLDS: PlainThresholds<T> = PlainThresholds::TUNED;
 
     pub fn new() -> Self {
         Self { integral: Integral::new(), motor_lead: T::ZERO, expected_flank: None }
@@ -114,7 +114,7 @@ impl<T: Real> PlainControl<T> {
 
 /// Damper on the motor [N m s/rad]: larger than D_m of the compensation, whose damper acts against the link.
 pub(super) fn swinging_motor_damping<T: Real>(motor_damping: T) -> T {
-    (T::ONE + PlainThresholds::<T>::VALUES.damping_growth) * motor_damping
+    (T::ONE + PlainThresholds::<T>::TUNED.damping_growth) * motor_damping
 }
 
 #[cfg(test)]

@@ -91,7 +91,7 @@ struct LawTorque<T: Real> {
 }
 
 impl<T: Real> PositionLaw<T> {
-    const THRESHOLDS: PositionThresholds<T> = PositionThresholds::VALUES;
+    const THRESHOLDS: PositionThresholds<T> = PositionThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {

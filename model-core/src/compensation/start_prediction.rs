@@ -25,7 +25,7 @@ pub(super) struct StartPrediction<T: Real> {
 }
 
 impl<T: Real> StartPrediction<T> {
-    const THRESHOLDS: StartThresholds<T> = StartThresholds::VALUES;
+    const THRESHOLDS: StartThresholds<T> = StartThresholds::TUNED;
 
     pub fn new() -> Self {
         Self { last_flank: None, continues: None, rests: false, standstill_time: T::ZERO, standstill_error: T::ZERO }

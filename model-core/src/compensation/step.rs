@@ -251,7 +251,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
                     // then set-point or reading is implausible. A loop that runs away is detected long before.
                     has_error: state.link_seen
                         && !exceeds_motor
-                        && state.error.abs() < EstimateBounds::<T>::VALUES.implausible_error,
+                        && state.error.abs() < EstimateBounds::<T>::TUNED.implausible_error,
                     external_impact: load.external_impact(tables),
                 }
             }

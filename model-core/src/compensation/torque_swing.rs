@@ -17,7 +17,7 @@ pub(super) struct TorqueSwing<T: Real> {
 }
 
 impl<T: Real> TorqueSwing<T> {
-    const THRESHOLDS: TorqueSwingThresholds<T> = TorqueSwingThresholds::VALUES;
+    const THRESHOLDS: TorqueSwingThresholds<T> = TorqueSwingThresholds::TUNED;
 
     pub fn new() -> Self {
         Self { side: T::ZERO, swings: false }

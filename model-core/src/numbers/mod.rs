@@ -7,6 +7,8 @@ pub(crate) mod integers;
 pub mod phase;
 pub mod random;
 mod real;
+#[cfg(feature = "sensitivity")]
+pub mod sensitivity;
 mod thresholds;
 
 pub use real::Real;

@@ -50,6 +50,21 @@ pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use samples::{Reading, Samples};
 pub use tables::{ObserverTables, ProbeTable};
 
+/// Description of every threshold of the observer.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn thresholds() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [
+        thresholds::list(),
+        sensors::thresholds::list(),
+        filters::thresholds::list(),
+        contact::thresholds::list(),
+        identification::thresholds::list(),
+        health::thresholds::list(),
+        design::thresholds::list(),
+    ]
+    .concat()
+}
+
 /// Observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
 ///
 /// The joint of this example has a narrower gap than its design states; a torque swings it to and fro twice a second:

@@ -14,3 +14,9 @@ thresholds! {
         bias: T = T::HALF,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [ValidityThresholds::<f64>::TUNED.list()].concat()
+}

@@ -20,7 +20,7 @@ pub mod design;
 mod judge;
 mod line;
 pub mod tables;
-mod thresholds;
+pub(super) mod thresholds;
 mod track;
 mod verdict;
 

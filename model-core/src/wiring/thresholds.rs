@@ -95,3 +95,9 @@ thresholds! {
         torque_factor: f64 = 1.6,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [JUDGE.list(), CHECK.list(), WIRING_DESIGN.list()].concat()
+}

@@ -32,7 +32,9 @@ use crate::gears::design::{BandwidthLimit, DesignError, validate};
 use parameters::{JointParameters, Surroundings};
 
 /// Smallest phase margin of the motor alone in the open gap [rad].
-const MIN_PHASE_MARGIN: f64 = BANDWIDTH.phase_margin * PI / 180.0;
+fn min_phase_margin() -> f64 {
+    BANDWIDTH.phase_margin * PI / 180.0
+}
 
 /// Bisection steps for a frequency, a rate or a bandwidth: to a millionth.
 const HALVINGS: usize = 60;
@@ -117,7 +119,7 @@ pub fn good_bandwidth(joint: &JointParameters, of: &Surroundings) -> Result<f64,
 fn check_rate(body: &JointBody, settings: &CompensationSettings) -> Result<(), DesignError> {
     let rate = f64::from(settings.control_rate);
     let permits = |rate: f64, bandwidth: f64| {
-        rate >= BANDWIDTH.periods * bandwidth && phase_margin(body, settings, rate, bandwidth) >= MIN_PHASE_MARGIN
+        rate >= BANDWIDTH.periods * bandwidth && phase_margin(body, settings, rate, bandwidth) >= min_phase_margin()
     };
     if permits(rate, settings.bandwidth) {
         return Ok(());

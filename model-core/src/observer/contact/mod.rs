@@ -5,7 +5,7 @@
 pub mod force_contact;
 pub mod gap_position;
 
-mod thresholds;
+pub(super) mod thresholds;
 
 use force_contact::ForceContact;
 use gap_position::GapPosition;

@@ -11,3 +11,9 @@ thresholds! {
         persistence: u8 = 3,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [CONTACT.list()].concat()
+}

@@ -240,3 +240,23 @@ thresholds! {
         usual_uncertainties: f64 = 8.0,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [
+        LEARNING_DESIGN.list(),
+        CLOCK_DESIGN.list(),
+        CONTACT_DESIGN.list(),
+        BIAS_DESIGN.list(),
+        SUPERVISION_DESIGN.list(),
+        ROUNDING_DESIGN.list(),
+        RESPONSE_DESIGN.list(),
+        FILTER_DESIGN.list(),
+        TORQUE_DESIGN.list(),
+        COGGING_DESIGN.list(),
+        INERTIA_DESIGN.list(),
+        PROBE_DESIGN.list(),
+    ]
+    .concat()
+}

@@ -6,7 +6,7 @@ mod delayed;
 pub mod drive_side;
 pub mod load_side;
 
-mod thresholds;
+pub(super) mod thresholds;
 
 use drive_side::DriveSide;
 use load_side::LoadSide;

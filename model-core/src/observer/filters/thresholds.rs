@@ -10,3 +10,9 @@ thresholds! {
         peak_decay: T = T::TWENTIETH,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [MotorSideThresholds::<f64>::TUNED.list()].concat()
+}

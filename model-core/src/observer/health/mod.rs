@@ -6,7 +6,7 @@ pub mod motor_faults;
 mod output_faults;
 mod plausibility;
 mod recovery;
-mod thresholds;
+pub(super) mod thresholds;
 mod torque_response;
 
 use link_without_encoder::LinkWithoutEncoder;

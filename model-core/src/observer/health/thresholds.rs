@@ -97,3 +97,16 @@ thresholds! {
         min_response: T = T::SIXTH,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [
+        PLAUSIBILITY.list(),
+        MOTOR_FAULT.list(),
+        OUTPUT_FAULT.list(),
+        UnseenLinkThresholds::<f64>::TUNED.list(),
+        TorqueResponseThresholds::<f64>::TUNED.list(),
+    ]
+    .concat()
+}

@@ -31,7 +31,7 @@ pub mod least_squares;
 pub mod mesh_measurement;
 pub mod position_errors;
 pub mod regressors;
-mod thresholds;
+pub(super) mod thresholds;
 mod travel;
 mod trusted_parameters;
 pub mod uncertainty;

@@ -166,3 +166,19 @@ thresholds! {
         max_factor: i32 = 1000,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [
+        CONSISTENCY.list(),
+        FLANK.list(),
+        CoMotionThresholds::<f64>::TUNED.list(),
+        EstimatorThresholds::<f64>::TUNED.list(),
+        UncertaintyThresholds::<f64>::TUNED.list(),
+        GapVariationThresholds::<f64>::TUNED.list(),
+        OUTLIER.list(),
+        LEAST_SQUARES.list(),
+    ]
+    .concat()
+}

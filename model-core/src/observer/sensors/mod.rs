@@ -4,7 +4,7 @@
 pub mod counts;
 pub mod latency;
 
-mod thresholds;
+pub(super) mod thresholds;
 
 use counts::{CountChange, Counts};
 use latency::{Latency, SampleAge};

@@ -30,3 +30,9 @@ thresholds! {
         rejections_before_jump: u8 = 3,
     }
 }
+
+/// Description of every threshold of this file.
+#[cfg(feature = "sensitivity")]
+pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
+    [LATENCY.list(), COUNTS.list()].concat()
+}

@@ -1,0 +1,105 @@
+//! `cargo run -p sensitivity`: the sensitivity of every threshold of observer and compensation.
+//!
+//! Each threshold is halved and raised by half; each value runs a fixed set of closed loops (`runs`) in a child process,
+//! because a threshold gets its factor at process start (`model_core::numbers::sensitivity`). `change` finds the figure
+//! that moved most relative to its bound, and `page` keeps the table.
+
+mod change;
+mod page;
+mod runs;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Command, FromArgMatches};
+use model_core::numbers::sensitivity::{FACTORS, Threshold};
+use report::failure::{Failure, Outcome};
+use report::interruption::{self, UninterruptedWork};
+use report::output;
+use report::progress::Progress;
+use report::workspace::workspace;
+use report::write::write_text;
+
+use page::{Page, Row};
+use runs::Figures;
+
+/// Arguments of the program.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  cargo run -p sensitivity                              every threshold that the page lacks
+  cargo run -p sensitivity -- --only CONTACT.persistence --again")]
+struct Arguments {
+    /// Measures only this threshold; may be repeated
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+    /// Number of seeds of each test file
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100))]
+    seeds: u64,
+    /// Page with the table [default: docs/reference/sensitivity.md]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Measures again what the page already has
+    #[arg(long)]
+    again: bool,
+    /// Runs the test files into this folder; for the child processes of this program
+    #[arg(long, value_name = "FOLDER", hide = true)]
+    run_into: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    let command = Arguments::augment_args(Command::new("sensitivity"))
+        .about("Measure what moves when each threshold of observer and compensation is halved and raised by half");
+    report::command_line::main(command, Arguments::from_arg_matches, |arguments| match &arguments.run_into {
+        Some(folder) => runs::run_all(folder, arguments.seeds),
+        None => Progress::during(|progress| study(arguments, progress)),
+    })
+}
+
+fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+    // Ctrl-C ends the child process as well; the table with the finished rows is on disk after each row.
+    let _uninterrupted = UninterruptedWork::begin();
+    // No test file runs the wiring check.
+    let thresholds: Vec<Threshold> =
+        model_core::thresholds().into_iter().filter(|threshold| threshold.folder != "wiring").collect();
+    let is_threshold = |name: &String| thresholds.iter().any(|threshold| threshold.name == name);
+    if let Some(name) = arguments.only.iter().find(|name| !is_threshold(name)) {
+        return Err(Failure::new(format!("`{name}` is no threshold of observer or compensation"))
+            .with_help("docs/reference/sensitivity.md lists the names"));
+    }
+    let path = arguments.out.clone().unwrap_or_else(|| workspace().join("docs/reference/sensitivity.md"));
+    progress.stage("runs with the tuned thresholds");
+    let base = runs::measure(None, arguments.seeds)?;
+    let mut page = Page::open(&path, &thresholds, &base, arguments.seeds);
+    let wanted = |threshold: &&Threshold| {
+        (arguments.only.is_empty() || arguments.only.iter().any(|name| name == threshold.name))
+            && (arguments.again || !page.is_measured(threshold.name))
+    };
+    let wanted: Vec<&Threshold> = thresholds.iter().filter(wanted).collect();
+    progress.run("measuring", wanted.len() as u64);
+    for threshold in wanted {
+        let row = measure_row(threshold, &base, arguments.seeds)?;
+        progress.print_above(&format!("{}: {}; {}", threshold.name, row[0], row[1]));
+        page.set(threshold.name, row);
+        write_text(&path, &page.text())?;
+        progress.advance(1);
+    }
+    write_text(&path, &page.text())?;
+    progress.clear();
+    output::print(&format!("table: {}\n", path.display()))
+}
+
+/// Cells of a threshold, one for each factor.
+fn measure_row(threshold: &Threshold, base: &Figures, seeds: u64) -> Outcome<Row> {
+    let mut row = Row::default();
+    for (cell, (factor, value)) in row.iter_mut().zip(FACTORS.into_iter().zip(&threshold.scaled)) {
+        *cell = if *value == threshold.value {
+            format!("stays {value}: rounded")
+        } else {
+            change::cell(base, &runs::measure(Some((threshold.name, factor)), seeds)?)
+        };
+        if interruption::requested() {
+            return Err(Failure::interrupted("stopped by the user"));
+        }
+    }
+    Ok(row)
+}

@@ -20,7 +20,6 @@ thresholds! {
     }
 }
 
-/// Description of every threshold of this file.
 #[cfg(feature = "sensitivity")]
 pub(crate) fn thresholds() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
     [ProbeThresholds::<f64>::TUNED.list()].concat()

@@ -425,7 +425,6 @@ thresholds! {
     }
 }
 
-/// Description of every threshold of this file.
 #[cfg(feature = "sensitivity")]
 pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
     [

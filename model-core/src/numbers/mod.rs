@@ -2,6 +2,8 @@
 //! band, integer division, digests, random words, declaration of thresholds.
 
 pub(crate) mod arithmetic;
+#[cfg(feature = "design")]
+pub(crate) mod count_weights;
 pub mod digest;
 pub(crate) mod integers;
 pub mod phase;

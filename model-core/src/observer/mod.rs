@@ -70,19 +70,15 @@ pub(crate) fn thresholds() -> std::vec::Vec<crate::numbers::sensitivity::Thresho
 /// The joint of this example has a narrower gap than its design states; a torque swings it to and fro twice a second:
 ///
 /// ```
-/// use model_core::gears::{Tables, design::design};
-/// use model_core::observer::design::{design_observer, observer_settings};
 /// use model_core::observer::{MAPPED, Observer, Source};
-/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+/// use model_core::{ControllerDesign, VirtualJointDesign};
 ///
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-/// let mut designed = q1.parameters.clone();
-/// designed.sun_planet.half_backlash.iter_mut().for_each(|half_backlash| *half_backlash = 60e-6);
-/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
-/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
-/// let tables = design_observer(&designed, &observer_settings(&q1.surroundings))?;
-/// let mut joint = VirtualJoint::new(&gears, &around);
-/// let mut observer = Observer::<f32, MAPPED>::new(&tables);
+/// let mut nominal = q1.clone();
+/// nominal.parameters.sun_planet.half_backlash.iter_mut().for_each(|half_backlash| *half_backlash = 60e-6);
+/// let tables = ControllerDesign::new(&nominal, 10_000)?.observer;
+/// let plant = VirtualJointDesign::<3>::new(&q1, 10_000)?;
+/// let (mut joint, mut observer) = (plant.joint(), Observer::<f32, MAPPED>::new(&tables));
 /// for period in 0..30_000 {
 ///     observer.step(&joint.samples());
 ///     joint.advance((12.6 * 1e-4 * period as f32).cos(), 0.0);

@@ -15,7 +15,6 @@ thresholds! {
     }
 }
 
-/// Description of every threshold of this file.
 #[cfg(feature = "sensitivity")]
 pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
     [ValidityThresholds::<f64>::TUNED.list()].concat()

@@ -6,6 +6,7 @@ use core::f64::consts::TAU;
 use crate::gears::design::{DesignError, design};
 use crate::gears::{Kinematics, Mechanics, Scales, Tables, gear_losses};
 use crate::numbers::Real;
+use crate::numbers::count_weights::divisor;
 use crate::observer::design::{CLOCK_TICKS, NO_LIMIT};
 use crate::virtual_joint::tables::{
     COMMAND_QUEUE_LENGTH, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
@@ -41,7 +42,7 @@ pub fn design_surroundings<T: Real, const N: usize>(
     let scales = Scales::new(joint);
     let period = 1.0 / f64::from(tables.tick_rate);
     let (teeth, sun) = (geometry.sun_teeth + geometry.ring_teeth, geometry.sun_teeth);
-    let common = common_divisor(teeth, sun);
+    let common = divisor(teeth.into(), sun.into()) as u32;
     let units = f64::powi(2.0, 32) / TAU;
     let lever = geometry.carrier_base_radius();
     let motor_inertia = joint.rotor_inertia + joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2);
@@ -139,10 +140,6 @@ fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(
         1.0 + 1e-9,
         "1: a virtual joint counts teeth",
     )
-}
-
-fn common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ mod dwell_noise_tests;
 #[cfg(test)]
 mod gap_variation_tests;
 mod inertia;
-mod integers;
 mod probe;
 mod settings;
 mod sides;

@@ -12,10 +12,11 @@ use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
 use super::thresholds::{
     BIAS_DESIGN, CLOCK_DESIGN, CONTACT_DESIGN, LEARNING_DESIGN, RESPONSE_DESIGN, ROUNDING_DESIGN, SUPERVISION_DESIGN,
 };
-use super::{cogging, inertia, integers};
+use super::{cogging, inertia};
 use crate::gears::Kinematics;
 use crate::gears::design::kalman::Filter;
 use crate::gears::design::{DesignError, validate};
+use crate::numbers::count_weights::CountWeights;
 use crate::numbers::{Real, digest};
 use crate::observer::tables::{
     ClockTable, ContactTable, CountTable, EncoderTable, LearnerTable, LeverTable, LoadTable, MOST_PARAMETERS,
@@ -307,7 +308,7 @@ fn counts<T: Real>(
     let motor = settings.motor_encoder;
     let output = settings.output_encoder.unwrap_or(motor);
     let geometry = &joint.geometry;
-    let weights = integers::Weights::new(
+    let weights = CountWeights::new(
         motor.counts_per_turn,
         output.counts_per_turn,
         geometry.sun_teeth + geometry.ring_teeth,

@@ -31,7 +31,6 @@ thresholds! {
     }
 }
 
-/// Description of every threshold of this file.
 #[cfg(feature = "sensitivity")]
 pub(crate) fn list() -> std::vec::Vec<crate::numbers::sensitivity::Threshold> {
     [LATENCY.list(), COUNTS.list()].concat()

@@ -1,7 +1,7 @@
 //! Gear ratio on counts, in integers (O1).
 
 /// Integer weights of motor less ratio times output: motor count * `motor` - output count * `output`.
-pub(super) struct Weights {
+pub(crate) struct CountWeights {
     /// Units per motor count.
     pub motor: i64,
     /// Units per output count.
@@ -10,7 +10,7 @@ pub(super) struct Weights {
     pub modulus: i64,
 }
 
-impl Weights {
+impl CountWeights {
     /// Computes the weights from the counts per turn and the ratio `over / under` of motor to output turns.
     ///
     /// With counts n and counts per turn C, motor less ratio times output is n_m / C_m - (over / under) n_o / C_o
@@ -32,13 +32,14 @@ impl Weights {
 /// Largest number of units per turn: leaves room for the difference of two encoders in 64 bits with sign.
 const MOST_UNITS: u128 = 1 << 60;
 
-fn divisor(a: u128, b: u128) -> u128 {
+/// Greatest common divisor.
+pub(crate) fn divisor(a: u128, b: u128) -> u128 {
     if b == 0 { a } else { divisor(b, a % b) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Weights;
+    use super::CountWeights;
 
     #[test]
     fn whole_turns_leave_no_difference() {
@@ -48,7 +49,7 @@ mod tests {
             (4000, 7200, 28, 3),
             (24, 1 << 24, 129_671_429, 100_000),
         ] {
-            let weights = Weights::new(motor_turn, output_turn, over, under).expect("they fit");
+            let weights = CountWeights::new(motor_turn, output_turn, over, under).expect("they fit");
             // `over` motor turns are `under` output turns.
             let motor = i128::from(over) * i128::from(motor_turn);
             let output = i128::from(under) * i128::from(output_turn);
@@ -60,6 +61,6 @@ mod tests {
 
     #[test]
     fn turn_of_too_many_units_is_refused() {
-        assert!(Weights::new(16_777_213, 16_777_183, 99_999_989, 100_003).is_none());
+        assert!(CountWeights::new(16_777_213, 16_777_183, 99_999_989, 100_003).is_none());
     }
 }

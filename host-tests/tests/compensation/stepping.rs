@@ -30,8 +30,14 @@ fn fixed_steps_match_adaptive_steps() {
             case.bandwidth(&test.file).expect("a bandwidth"),
         );
         let mut set_points = SetPointSource::of_positions(case.motion.clone());
-        let moments = Rig::new(&setup).expect("a sound drive train").record(&mut controller, &mut set_points);
-        moments.expect("it runs").into_iter().map(|moment| moment.link[0]).collect::<Vec<f64>>()
+        let mut links = Vec::new();
+        let rig = Rig::new(&setup).expect("a sound drive train");
+        let run = rig.run(&mut controller, &mut set_points, &mut |period| {
+            links.push(period.plant.joint().link_angle);
+            Ok(())
+        });
+        run.expect("it runs");
+        links
     });
     let difference = fixed.iter().zip(&adaptive).map(|(fixed, adaptive)| (fixed - adaptive).abs());
     FIXED_STEPS.check(difference.fold(0.0, f64::max) / LOST_MOTION);

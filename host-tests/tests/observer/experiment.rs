@@ -8,11 +8,12 @@ use model_core::observer::{Estimates, MAPPED, Observer, ObserverTables, Samples}
 use parameters::{AbsoluteEncoder, JointParameters};
 use reference::drive_train::{DriveTrainParameters, Stepping};
 use reference::joint::Start;
-use scenario::rig::{ActiveController, PeriodSample, Rig, Setup};
+use scenario::rig::{ActiveController, Rig, Setup};
 use scenario::set_point_source::SetPointSource;
 
 use crate::motion::{MotorController, TestMotion, inertia_at_motor, uniform};
 use crate::presets::{preset, with_backlash};
+use crate::recording::{self, PeriodSample};
 use crate::replay::{ObserverErrors, replay, samples, settings};
 
 /// Encoders of an experiment.
@@ -127,11 +128,8 @@ impl Experiment {
         let Setup { joint, train, motion, .. } = &self.setup;
         let rig = Rig::new(&self.setup).expect("a sound drive train");
         let controller = MotorController::new(joint, train).homed(&rig.home());
-        rig.record(
-            &mut ActiveController::from_rival(Box::new(controller)),
-            &mut SetPointSource::of_positions(motion.clone()),
-        )
-        .expect("it runs")
+        let mut controller = ActiveController::from_rival(Box::new(controller));
+        recording::record(rig, &mut controller, &mut SetPointSource::of_positions(motion.clone()))
     }
 }
 

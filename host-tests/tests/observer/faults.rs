@@ -1,12 +1,12 @@
 //! Encoder faults and implausible samples: they are detected and reported, errors stay bounded, and the observer recovers.
 
+use crate::recording::PeriodSample;
 use host_tests::tolerance::observer::{
     FAULT_DETECTION_TIME, FAULT_DETECTION_TIME_AT_SPEED, GAP_COARSE, LINK_ANGLE_AFTER_SLIP, LOST_COUNTS_DETECTION_TIME,
     ONE_WRONG_BIT, WIDTH_AFTER_LOST_COUNTS,
 };
 use model_core::observer::{Estimates, MAPPED, OutputFault, Samples, Source};
 use reference::drive_train::Disturbance;
-use scenario::rig::PeriodSample;
 
 use crate::experiment::{Encoders, Experiment};
 use crate::motion::{TestMotion, uniform};

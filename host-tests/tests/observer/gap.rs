@@ -1,9 +1,9 @@
 //! Gap, contact, torques and width with both encoders: errors against their bounds on a few joints, widths and motions.
 
+use crate::recording::PeriodSample;
 use host_tests::tolerance::observer::*;
 use model_core::observer::{Estimate, MAPPED, PLAIN};
 use reference::drive_train::Disturbance;
-use scenario::rig::PeriodSample;
 
 use crate::experiment::{Encoders, Experiment};
 use crate::motion::growing;

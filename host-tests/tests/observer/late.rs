@@ -1,9 +1,9 @@
 //! Late readings, by their own time stamps: no estimate diverges, unknown quantities are marked invalid, and a returning encoder is used
 //! again.
 
+use crate::recording::PeriodSample;
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{OutputFault, Samples, Source};
-use scenario::rig::PeriodSample;
 
 use crate::experiment::{Encoders, Experiment};
 use crate::motion::TestMotion;

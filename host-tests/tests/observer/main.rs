@@ -15,4 +15,5 @@ mod page;
 mod precision;
 mod presets;
 mod probe;
+mod recording;
 mod replay;

@@ -1,8 +1,8 @@
 //! Memory of estimated parameters: saved, loaded by another observer at another place, rejected where it does not fit.
 
+use crate::recording::PeriodSample;
 use host_tests::tolerance::observer::GAP_COARSE;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
-use scenario::rig::PeriodSample;
 
 use crate::experiment::{Encoders, Experiment};
 use crate::replay::samples;

@@ -1,12 +1,13 @@
 //! Width probe in the loop with a plant: with a held load it measures the width, otherwise it is rejected.
 
+use crate::recording::PeriodSample;
 use host_tests::tolerance::observer::PROBED_WIDTH;
 use model_core::observer::design::{ObserverSettings, design_observer, design_probe};
 use model_core::observer::{MAPPED, Observer, ObserverTables, ProbeTable};
 use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 use reference::closed_loop::{Controller, SetPoint};
 use reference::drive_train::{Disturbance, Measurement};
-use scenario::rig::{ActiveController, Period, PeriodSample, Rig, RunError};
+use scenario::rig::{ActiveController, Period, Rig, RunError};
 use scenario::set_point_source::SetPointSource;
 
 use crate::experiment::{Encoders, Experiment};

@@ -3,12 +3,12 @@
 use model_core::gears::Kinematics;
 use std::f64::consts::TAU;
 
+use crate::recording::PeriodSample;
 use model_core::numbers::Real;
 use model_core::observer::design::{EncoderSettings, ObserverSettings};
 use model_core::observer::{Estimates, Observer, ObserverTables, Reading, Samples};
 use parameters::{AbsoluteEncoder, ContactState, JointParameters};
 use reference::drive_train::{DriveTrainParameters, ErrorPhases};
-use scenario::rig::PeriodSample;
 
 /// Rate of the samples' clock [Hz].
 pub const CLOCK_RATE: u32 = 10_000_000;

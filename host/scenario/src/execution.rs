@@ -179,7 +179,7 @@ fn compensation_controller<'d>(
 }
 
 /// Translator to the samples of an observer of the nominal joint.
-fn translator(case: &Case) -> Translator {
+pub fn translator(case: &Case) -> Translator {
     let surroundings = &case.nominal_surroundings;
     let settings = observer_settings(surroundings);
     let turns = [surroundings.motor_encoder, surroundings.output_encoder].map(|encoder| encoder.counts_per_turn);

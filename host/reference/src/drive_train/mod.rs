@@ -94,6 +94,8 @@ pub struct TrueTorques {
 pub struct DriveTrain<J = Reference> {
     parameters: DriveTrainParameters,
     disturbances: Vec<Disturbance>,
+    /// Braking torque on the link in addition to the disturbances, once it is set [N m].
+    external_torque: Option<f64>,
     joint_model: J,
     /// State of the joint at the end of the last part.
     joint: Observation,
@@ -179,6 +181,7 @@ impl<J: JointModel> DriveTrain<J> {
         let phases = &parameters.effect_phases;
         let mut train = Self {
             disturbances,
+            external_torque: None,
             current_loop: CurrentLoop::new(*around, seed),
             motor_encoder: Encoder::new(
                 around.motor_encoder,
@@ -224,6 +227,11 @@ impl<J: JointModel> DriveTrain<J> {
     /// Returns the drive train with another integration of its joint.
     pub fn stepped(self, stepping: Stepping) -> Self {
         Self { stepping, ..self }
+    }
+
+    /// Sets a braking torque on the link in addition to the disturbances [N m].
+    pub fn set_external_torque(&mut self, torque: f64) {
+        self.external_torque = Some(torque);
     }
 
     /// Advances by one control period under a torque command [N m].
@@ -343,7 +351,8 @@ impl<J: JointModel> DriveTrain<J> {
 
         let gravity = self.payload_scale * around.gravity_torque * joint.link_angle.sin();
         // The value at the middle of the part is used for all of it.
-        let disturbance = self.disturbances.iter().map(|disturbance| disturbance.torque(middle_of_part)).sum::<f64>();
+        let stated = self.disturbances.iter().map(|disturbance| disturbance.torque(middle_of_part)).sum::<f64>();
+        let disturbance = self.external_torque.map_or(stated, |torque| stated + torque);
         let payload =
             self.payload.as_mut().map_or(0.0, |payload| payload.advance(joint.link_angle, joint.link_speed, part));
         let from_gears = if self.compliant {

@@ -13,6 +13,8 @@ use crate::random::RandomStream;
 pub(super) struct ActiveFault {
     pub fault: Fault,
     pub stream: RandomStream,
+    /// True for readings that an encoder drops by itself.
+    pub is_of_encoder: bool,
     /// Counts at the start of a freeze (`frozen_counts`), lost counts, and the previous reading.
     frozen_counts: Option<i64>,
     lost_counts: f64,
@@ -32,6 +34,7 @@ impl ActiveFault {
         Self {
             fault: *fault,
             stream,
+            is_of_encoder: false,
             frozen_counts: None,
             lost_counts: 0.0,
             previous_counts: None,

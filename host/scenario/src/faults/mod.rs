@@ -96,6 +96,22 @@ impl HostFaults {
         Self { start: [ratio * motor, output].map(|counts| counts.round() as i64), ..self }
     }
 
+    /// Adds a fault during a run; `seed` is that of its random numbers.
+    pub fn inject(&mut self, fault: &Fault, seed: u64) {
+        self.faults.push(ActiveFault::new(fault, self.faults.len(), seed));
+    }
+
+    /// Ends all faults at a time [s]. Readings that encoders drop by themselves go on; lost counts stay lost.
+    pub fn end_all(&mut self, time: f64) {
+        let stated = self.faults.iter_mut().filter(|active| !active.is_of_encoder);
+        stated.for_each(|active| active.fault.end = active.fault.end.min(time));
+    }
+
+    /// Sets the half-backlash of the sound teeth [m].
+    pub fn set_half_backlash(&mut self, half_backlash: f64) {
+        self.teeth.set_half_backlash(half_backlash);
+    }
+
     /// Applies faults to a measurement on its way to the controller.
     pub fn sense(&mut self, measurement: &Measurement) -> ControllerInputs {
         self.sense_late(measurement, 0.0)
@@ -224,7 +240,9 @@ fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = ActiveFau
     of.into_iter().zip(shares).filter(|(_, share)| *share > 0.0).map(move |((shaft, stream), share)| {
         let kind = FaultKind::LostReadings(shaft, share);
         let fault = Fault { start: 0.0, end: f64::INFINITY, seed: (), kind };
-        ActiveFault::with_stream(&fault, RandomStream::new(seed, stream))
+        let mut active = ActiveFault::with_stream(&fault, RandomStream::new(seed, stream));
+        active.is_of_encoder = true;
+        active
     })
 }
 

@@ -35,6 +35,11 @@ impl ToothState {
         }
     }
 
+    /// Sets the half-backlash without faults [m]; it acts from the next update on.
+    pub fn set_half_backlash(&mut self, half_backlash: f64) {
+        self.half_backlash = half_backlash;
+    }
+
     /// Changes the teeth as faults begin, end, or come into mesh.
     pub fn update_teeth(&mut self, faults: &[ActiveFault], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);

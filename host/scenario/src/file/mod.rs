@@ -105,6 +105,17 @@ pub fn read(text: &str) -> Result<TestFile, Vec<Problem>> {
     file.filter(|_| problems.is_empty()).ok_or(problems)
 }
 
+/// Reads the text of `[[fault]]` sections alone; on failure returns every problem.
+pub fn read_faults(text: &str) -> Result<Vec<Fault>, Vec<Problem>> {
+    let notes = Notes::new(text);
+    let (table, syntax) = DeTable::parse_recoverable(text);
+    syntax.iter().take(1).for_each(|error| notes.syntax(error));
+    let top = Section::new("", 0..0, table.get_ref(), &notes);
+    let faults = top.tables("fault").iter().filter_map(faults::read).collect();
+    let (problems, _) = notes.into_parts();
+    if problems.is_empty() { Ok(faults) } else { Err(problems) }
+}
+
 fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let top = Section::new("", 0..0, table, notes);
     let profile = match table.get("profile") {

@@ -9,22 +9,22 @@
 mod active_controller;
 mod error;
 mod period;
-mod recording;
 mod setup;
 mod true_state;
 
 pub use active_controller::ActiveController;
 pub use error::RunError;
 pub use period::Period;
-pub use recording::PeriodSample;
 pub use setup::Setup;
 pub use true_state::TrueStateCompensation;
 
 use model_core::gears::Kinematics;
 use reference::closed_loop::SharedProfile;
-use reference::drive_train::Measurement;
+use reference::drive_train::{Measurement, TrueTorques};
+use reference::joint::Observation;
 
-use super::faults::HostFaults;
+use super::faults::{ControllerInputs, HostFaults};
+use super::file::Fault;
 use super::plant::{Plant, plant_from};
 use super::set_point_source::SetPointSource;
 use report::failure::Outcome;
@@ -38,6 +38,22 @@ pub struct Rig {
     period: f64,
     /// Control periods of a run.
     periods: u64,
+    /// Control periods that are over.
+    index: u64,
+}
+
+/// Control period at its start.
+pub struct BegunPeriod {
+    /// Index in the run, from 0.
+    pub index: u64,
+    /// Start [s].
+    pub time: f64,
+    /// Inputs of the controller.
+    pub seen: ControllerInputs,
+    /// True state of the joint.
+    pub joint: Observation,
+    /// True torques of the period before.
+    pub torques: TrueTorques,
 }
 
 /// Callback for every period, which may end the run.
@@ -57,6 +73,7 @@ impl Rig {
             motion: setup.motion.clone(),
             period: 1.0 / rate,
             periods: (setup.duration * rate).round() as u64,
+            index: 0,
         })
     }
 
@@ -75,6 +92,68 @@ impl Rig {
         self.plant.measure()
     }
 
+    /// Begins a control period: changes the teeth by their faults and reads the encoders through theirs. Set-points and
+    /// samples are taken at the true start of the period, `BegunPeriod::time`.
+    pub fn begin_period(&mut self) -> BegunPeriod {
+        let Self { plant, faults, period, index, .. } = self;
+        let time = *index as f64 * *period + plant.lateness();
+        let joint = plant.joint().clone();
+        faults.update_teeth(time, &joint, plant.joint_model().as_mut());
+        let seen = faults.sense_late(&plant.measure(), plant.lateness());
+        BegunPeriod { index: *index, time, seen, joint, torques: plant.torques() }
+    }
+
+    /// Ends a control period: the motor applies a torque [N m] through its faults, and the plant advances.
+    pub fn end_period(&mut self, time: f64, command: f64) -> Result<(), RunError> {
+        if !command.is_finite() {
+            return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
+        }
+        self.plant
+            .advance(self.faults.torque(time, command))
+            .map_err(|error| RunError::Broke(format!("the plant at t = {time:.4} s: {error}")))?;
+        self.index += 1;
+        Ok(())
+    }
+
+    /// Fails if the joint's motion is no longer finite.
+    pub fn check_motion(&self, time: f64) -> Result<(), RunError> {
+        let joint = self.plant.joint();
+        if (joint.link_angle + joint.sun_force()).is_finite() {
+            return Ok(());
+        }
+        Err(RunError::Broke(format!("the joint's motion is not finite at t = {time:.4} s")))
+    }
+
+    /// Sets a braking torque on the link in addition to the disturbances [N m].
+    pub fn set_external_torque(&mut self, torque: f64) {
+        self.plant.set_external_torque(torque);
+    }
+
+    /// Sets the half-backlash of the sound teeth [m].
+    pub fn set_half_backlash(&mut self, half_backlash: f64) {
+        self.faults.set_half_backlash(half_backlash);
+    }
+
+    /// Adds a fault during a run, with times of the run [s].
+    pub fn inject(&mut self, fault: &Fault, seed: u64) {
+        self.faults.inject(fault, seed);
+    }
+
+    /// Ends all faults at a time of the run [s]; counts that an encoder lost stay lost.
+    pub fn end_faults(&mut self, time: f64) {
+        self.faults.end_all(time);
+    }
+
+    /// Plant, at the end of the last period.
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// Current half-backlash of every mesh [m].
+    pub fn half_backlash(&self) -> f64 {
+        self.plant.width_scale() * self.faults.current_half_backlash()
+    }
+
     /// Runs the loop from the first period to the last.
     pub fn run(
         mut self,
@@ -82,53 +161,26 @@ impl Rig {
         set_points: &mut SetPointSource,
         on_period: OnPeriod<'_>,
     ) -> Result<(), RunError> {
-        let Self { plant, faults, motion, period, periods } = &mut self;
-        for index in 0..*periods {
-            // Set-points and samples are taken at the true start of the period.
-            let time = index as f64 * *period + plant.lateness();
-            let joint = plant.joint().clone();
-            faults.update_teeth(time, &joint, plant.joint_model().as_mut());
+        for _ in 0..self.periods {
+            let BegunPeriod { index, time, seen, joint, torques } = self.begin_period();
             let (number, set_point) = set_points.at(time, index);
-            let set_point = faults.receive(time, number, set_point);
-            let seen = faults.sense_late(&plant.measure(), plant.lateness());
-            controller.set_true_state(&joint, &plant.torques());
+            let set_point = self.faults.receive(time, number, set_point);
+            controller.set_true_state(&joint, &torques);
             let (command, answer) = controller.step(&seen, &set_point)?;
-            if !command.is_finite() {
-                return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
-            }
-            plant
-                .advance(faults.torque(time, command))
-                .map_err(|error| RunError::Broke(format!("the plant at t = {time:.4} s: {error}")))?;
-            let joint = plant.joint();
+            self.end_period(time, command)?;
             on_period(&Period {
                 index,
                 time,
-                plant,
-                wanted: motion.at(joint.time).position,
-                half_backlash: plant.width_scale() * faults.current_half_backlash(),
+                plant: &self.plant,
+                wanted: self.motion.at(self.plant.joint().time).position,
+                half_backlash: self.half_backlash(),
                 seen: &seen,
                 set_point: &set_point,
                 command,
                 answer: answer.as_ref(),
             })?;
-            if !(joint.link_angle + joint.sun_force()).is_finite() {
-                return Err(RunError::Broke(format!("the joint's motion is not finite at t = {time:.4} s")));
-            }
+            self.check_motion(time)?;
         }
         Ok(())
-    }
-
-    /// Runs the loop and records measurements and truth.
-    pub fn record(
-        self,
-        controller: &mut ActiveController<'_>,
-        set_points: &mut SetPointSource,
-    ) -> Result<Vec<PeriodSample>, RunError> {
-        let mut moments = Vec::with_capacity(self.periods as usize);
-        self.run(controller, set_points, &mut |period| {
-            moments.push(PeriodSample::at_end_of(period));
-            Ok(())
-        })?;
-        Ok(moments)
     }
 }

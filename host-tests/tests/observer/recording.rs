@@ -1,6 +1,7 @@
 //! Measurements of a run with the truth, for an observer that runs over them later.
 
-use super::period::Period;
+use scenario::rig::{ActiveController, Period, Rig};
+use scenario::set_point_source::SetPointSource;
 
 /// One control period: measurements and truth at its end.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -38,4 +39,15 @@ impl PeriodSample {
             motor: [joint.motor_angle, joint.motor_speed],
         }
     }
+}
+
+/// Runs the loop of a rig and records measurements and truth.
+pub fn record(rig: Rig, controller: &mut ActiveController<'_>, set_points: &mut SetPointSource) -> Vec<PeriodSample> {
+    let mut moments = Vec::new();
+    rig.run(controller, set_points, &mut |period| {
+        moments.push(PeriodSample::at_end_of(period));
+        Ok(())
+    })
+    .expect("it runs");
+    moments
 }

@@ -1,0 +1,223 @@
+//! Registers of a drive: address, name, type and range.
+
+/// Type of a register, with the range of values that it accepts; `None` for one that can only be read.
+#[derive(Debug, Clone, Copy)]
+pub enum Form {
+    /// f32.
+    Float(Option<fn(f32) -> bool>),
+    /// u32.
+    Whole(Option<fn(u32) -> bool>),
+}
+
+/// Value of a register.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// f32.
+    Float(f32),
+    /// u32.
+    Whole(u32),
+}
+
+impl Value {
+    /// Bytes of the value, low byte first.
+    pub fn to_bytes(self) -> [u8; 4] {
+        match self {
+            Self::Float(value) => value.to_le_bytes(),
+            Self::Whole(value) => value.to_le_bytes(),
+        }
+    }
+}
+
+macro_rules! registers {
+    ($($(#[$doc:meta])* $register:ident = $address:literal, $name:literal, $form:expr;)*) => {
+        /// Register.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Register {
+            $($(#[$doc])* $register,)*
+        }
+
+        impl Register {
+            /// All registers.
+            pub const ALL: &[Self] = &[$(Self::$register),*];
+
+            /// Register of an address; `None` without one.
+            pub fn from_address(address: u8) -> Option<Self> {
+                match address {
+                    $($address => Some(Self::$register),)*
+                    _ => None,
+                }
+            }
+
+            /// Address.
+            pub fn address(self) -> u8 {
+                match self {
+                    $(Self::$register => $address,)*
+                }
+            }
+
+            /// Name in the maker's documents.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$register => $name,)*
+                }
+            }
+
+            /// Type and range.
+            pub fn form(self) -> Form {
+                match self {
+                    $(Self::$register => $form,)*
+                }
+            }
+        }
+    };
+}
+
+registers! {
+    /// Bus voltage below which the drive has a fault [V].
+    UnderVoltage = 0, "UV_Value", Float(Some(|value| value > 10.0 && value <= f32::MAX));
+    /// Torque coefficient by the user [N m/A]; 0 for the one that was identified.
+    TorqueCoefficient = 1, "KT_Value", Float(Some(is_not_negative));
+    /// Temperature of the winding that is a fault [deg C].
+    OverTemperature = 2, "OT_Value", Float(Some(|value| (80.0..200.0).contains(&value)));
+    /// Current that is a fault, as a share of the largest [-].
+    OverCurrent = 3, "OC_Value", Float(Some(|value| value > 0.0 && value < 1.0));
+    /// Acceleration of profiles [rad/s^2].
+    Acceleration = 4, "ACC", Float(Some(is_positive));
+    /// Deceleration of profiles, negative [rad/s^2].
+    Deceleration = 5, "DEC", Float(Some(|value| is_positive(-value)));
+    /// Largest speed [rad/s].
+    MaxSpeed = 6, "MAX_SPD", Float(Some(is_positive));
+    /// Identifier of feedback frames.
+    FeedbackId = 7, "MST_ID", Whole(Some(is_identifier));
+    /// Identifier of the drive.
+    Id = 8, "ESC_ID", Whole(Some(is_identifier));
+    /// Time without a command after which the drive has a fault [50 us]; 0 for none.
+    Timeout = 9, "TIMEOUT", Whole(Some(|_| true));
+    /// Code of the control mode.
+    ControlMode = 10, "CTRL_MODE", Whole(Some(|value| (1..=4).contains(&value)));
+    /// Viscous damping of the motor.
+    Damping = 11, "Damp", Float(None);
+    /// Inertia of the motor [kg m^2].
+    Inertia = 12, "Inertia", Float(None);
+    /// Reserved: version of the hardware.
+    HardwareVersion = 13, "hw_ver", Whole(None);
+    /// Version of the software.
+    SoftwareVersion = 14, "sw_ver", Whole(None);
+    /// Reserved: serial number.
+    SerialNumber = 15, "SN", Whole(None);
+    /// Pole pairs.
+    PolePairs = 16, "NPP", Whole(None);
+    /// Resistance of the winding [ohm].
+    Resistance = 17, "Rs", Float(None);
+    /// Inductance of the winding [H].
+    Inductance = 18, "Ls", Float(None);
+    /// Flux linkage [Wb].
+    Flux = 19, "Flux", Float(None);
+    /// Ratio of the gear [-].
+    GearRatio = 20, "Gr", Float(None);
+    /// Range of positions [rad].
+    PositionRange = 21, "PMAX", Float(Some(is_positive));
+    /// Range of velocities [rad/s].
+    VelocityRange = 22, "VMAX", Float(Some(is_positive));
+    /// Range of torques [N m].
+    TorqueRange = 23, "TMAX", Float(Some(is_positive));
+    /// Bandwidth of the current loop.
+    CurrentBandwidth = 24, "I_BW", Float(Some(|value| (100.0..=10_000.0).contains(&value)));
+    /// Gain of the speed loop.
+    VelocityGain = 25, "KP_ASR", Float(Some(is_not_negative));
+    /// Integral gain of the speed loop.
+    VelocityIntegral = 26, "KI_ASR", Float(Some(is_not_negative));
+    /// Gain of the position loop [1/s].
+    PositionGain = 27, "KP_APR", Float(Some(is_not_negative));
+    /// Integral gain of the position loop.
+    PositionIntegral = 28, "KI_APR", Float(Some(is_not_negative));
+    /// Bus voltage above which the drive has a fault [V].
+    OverVoltage = 29, "OV_Value", Float(Some(is_positive));
+    /// Efficiency of the gear [-].
+    GearEfficiency = 30, "GREF", Float(Some(|value| value > 0.0 && value <= 1.0));
+    /// Damping factor from which the speed loop is tuned [-].
+    DampingFactor = 31, "Deta", Float(Some(|value| (1.0..=30.0).contains(&value)));
+    /// Bandwidth of the speed filter.
+    FilterBandwidth = 32, "V_BW", Float(Some(|value| value > 0.0 && value < 500.0));
+    /// Enhancement of the current loop.
+    CurrentEnhancement = 33, "IQ_c1", Float(Some(|value| (100.0..=10_000.0).contains(&value)));
+    /// Enhancement of the speed loop.
+    VelocityEnhancement = 34, "VL_c1", Float(Some(|value| value > 0.0 && value <= 10_000.0));
+    /// Code of the bit rate.
+    BitRate = 35, "can_br", Whole(Some(|value| value <= 4));
+    /// Second part of the software's version.
+    SubVersion = 36, "sub_ver", Whole(None);
+    /// Offset of the current in phase u.
+    OffsetU = 50, "u_off", Float(None);
+    /// Offset of the current in phase v.
+    OffsetV = 51, "v_off", Float(None);
+    /// First factor of the encoder's correction.
+    CorrectionOne = 52, "k1", Float(None);
+    /// Second factor of the encoder's correction.
+    CorrectionTwo = 53, "k2", Float(None);
+    /// Offset of the angle.
+    AngleOffset = 54, "m_off", Float(None);
+    /// Direction of the motor: 1 or -1.
+    Direction = 55, "dir", Float(None);
+    /// Offset of the motor encoder. Not in the manual, but in the client, like 59 to 65.
+    MotorOffset = 56, "m_off", Float(None);
+    /// Largest current [A].
+    MaxCurrent = 59, "Imax", Float(None);
+    /// Bus voltage [V].
+    BusVoltage = 60, "VBus", Float(None);
+    /// Temperature of the power stage [deg C].
+    BoardTemperature = 61, "Tpcb", Float(None);
+    /// Temperature of the winding [deg C].
+    MotorTemperature = 62, "Tmtr", Float(None);
+    /// Offset of the current sensor in phase u.
+    SensorOffsetU = 63, "Iu_off", Float(None);
+    /// Offset of the current sensor in phase v.
+    SensorOffsetV = 64, "Iv_off", Float(None);
+    /// Offset of the current sensor in phase w.
+    SensorOffsetW = 65, "Iw_off", Float(None);
+    /// Position of the output by the motor encoder and the ratio [rad].
+    MotorPosition = 80, "p_m", Float(None);
+    /// Position of the output by its own encoder [rad].
+    OutputPosition = 81, "xout", Float(None);
+}
+
+use Form::{Float, Whole};
+
+impl Register {
+    /// Value of four bytes.
+    pub fn value(self, bytes: [u8; 4]) -> Value {
+        match self.form() {
+            Float(_) => Value::Float(f32::from_le_bytes(bytes)),
+            Whole(_) => Value::Whole(u32::from_le_bytes(bytes)),
+        }
+    }
+
+    /// True if the register can be written and the value is in its range.
+    pub fn accepts(self, value: Value) -> bool {
+        match (self.form(), value) {
+            (Float(Some(accepts)), Value::Float(value)) => accepts(value),
+            (Whole(Some(accepts)), Value::Whole(value)) => accepts(value),
+            _ => false,
+        }
+    }
+
+    /// True if the register can be written.
+    pub fn is_writable(self) -> bool {
+        matches!(self.form(), Float(Some(_)) | Whole(Some(_)))
+    }
+}
+
+/// True for a finite number above zero.
+fn is_positive(value: f32) -> bool {
+    value > 0.0 && value <= f32::MAX
+}
+
+/// True for zero and a finite number above.
+fn is_not_negative(value: f32) -> bool {
+    (0.0..=f32::MAX).contains(&value)
+}
+
+/// True for an identifier of 11 bits.
+fn is_identifier(value: u32) -> bool {
+    value <= 0x7FF
+}

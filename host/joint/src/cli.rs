@@ -10,7 +10,7 @@ use report::{command_line, output};
 
 use crate::{
     board as board_files, budget, check, completions, flash, hil, identify, image, library, memory, merge, new, replay,
-    research, sim, sweep, tables,
+    research, sim, sweep, tables, twin,
 };
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
@@ -45,6 +45,8 @@ enum Command {
     Sweep(sweep::Arguments),
     /// Merge the shards of a sweep into one result; all shards must be complete
     Merge(merge::Arguments),
+    /// Put joints behind drives on a bus of this machine, for clients of finished drives: CAN or serial
+    Twin(twin::Arguments),
     /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
     Identify(identify::Arguments),
     /// Run the observer over a log: reproduce the run that wrote it, or estimate from any other log
@@ -83,6 +85,7 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Merge(arguments)) => merge::run(arguments),
+        Some(Command::Twin(arguments)) => twin::run(arguments),
         Some(Command::Identify(arguments)) => identify::run(arguments),
         Some(Command::Replay(arguments)) => replay::run(arguments),
         Some(Command::Memory(arguments)) => memory::run(arguments),

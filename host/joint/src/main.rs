@@ -18,6 +18,7 @@ mod research;
 mod sim;
 mod sweep;
 mod tables;
+mod twin;
 
 use std::process::ExitCode;
 

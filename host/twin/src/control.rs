@@ -1,0 +1,241 @@
+//! Commands that change joints while they run: lines of JSON on a Unix socket, each answered by a line of JSON.
+//!
+//! | key | value | effect |
+//! |---|---|---|
+//! | `joint` | identifier | joint that the other keys concern; all joints without it |
+//! | `load_N_m` | number | braking torque on the link |
+//! | `half_backlash_um` | number | half-backlash of every mesh |
+//! | `supply_V` | number | voltage of the supply without a load |
+//! | `motor_temperature_C` | number | temperature of the winding |
+//! | `fault` | object | fault with the keys of `[[fault]]` in test files; times count from now |
+//! | `end_faults` | `true` | ends all faults |
+//! | `status` | `true` | state of the joints |
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+
+use report::failure::{Failure, Outcome};
+use scenario::file::{Fault, read_faults};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::endpoint::remove_stale_socket;
+use crate::event::Event;
+use crate::joint::Joint;
+
+/// Command of one line.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Order {
+    joint: Option<u8>,
+    #[serde(rename = "load_N_m")]
+    load: Option<f64>,
+    #[serde(rename = "half_backlash_um")]
+    half_backlash: Option<f64>,
+    #[serde(rename = "supply_V")]
+    supply: Option<f32>,
+    #[serde(rename = "motor_temperature_C")]
+    motor_temperature: Option<f32>,
+    fault: Option<Map<String, Value>>,
+    #[serde(default)]
+    end_faults: bool,
+    #[serde(default)]
+    status: bool,
+}
+
+/// Answer to a line.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub enum Reply {
+    /// The command was carried out.
+    Done {
+        /// Simulated time [s].
+        time_s: f64,
+        /// States of the joints, if they were asked for.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        joints: Vec<Status>,
+    },
+    /// The command was refused as a whole.
+    Refused {
+        /// Reason.
+        error: String,
+        /// Remedy.
+        help: String,
+    },
+}
+
+/// State of a joint.
+#[derive(Debug, Serialize)]
+pub struct Status {
+    joint: u8,
+    name: String,
+    state: String,
+    fault: Option<String>,
+    position_turns: f32,
+    output_turns: Option<f32>,
+    link_rad: f64,
+    gap_um: f64,
+    half_backlash_um: f64,
+    #[serde(rename = "load_torque_Nm")]
+    load_torque: f64,
+    #[serde(rename = "motor_torque_Nm")]
+    motor_torque: f64,
+    #[serde(rename = "bus_V")]
+    bus: f32,
+    #[serde(rename = "motor_temperature_C")]
+    motor_temperature: f32,
+}
+
+/// Socket for commands, removed at the end.
+pub struct Socket(PathBuf);
+
+impl Socket {
+    /// Listens at a path.
+    pub fn listen(path: &Path, events: &Sender<Event>) -> Outcome<Self> {
+        remove_stale_socket(path);
+        let listener = UnixListener::bind(path).map_err(|error| {
+            Failure::new(format!("cannot listen at {}: {error}", path.display()))
+                .with_help("name a --control path in a folder of yours that is not in use")
+        })?;
+        let events = events.clone();
+        thread::spawn(move || {
+            for stream in listener.incoming().flatten() {
+                let events = events.clone();
+                thread::spawn(move || serve(&stream, &events));
+            }
+        });
+        Ok(Self(path.to_owned()))
+    }
+}
+
+impl Drop for Socket {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+fn serve(stream: &UnixStream, events: &Sender<Event>) {
+    let Ok(mut writer) = stream.try_clone() else { return };
+    for line in BufReader::new(stream).lines().map_while(Result::ok) {
+        let (answer, answered) = channel();
+        if events.send(Event::Control(line, answer)).is_err() {
+            return;
+        }
+        let Ok(text) = answered.recv() else { return };
+        if writeln!(writer, "{text}").is_err() {
+            return;
+        }
+    }
+}
+
+/// Carries out a line; returns the answer as JSON.
+pub fn execute(line: &str, joints: &mut [Joint<'_>]) -> String {
+    let reply = match read(line, joints) {
+        Ok((order, faults)) => apply(&order, &faults, joints),
+        Err(refused) => refused,
+    };
+    serde_json::to_string(&reply).unwrap_or_default()
+}
+
+fn refused(error: impl Into<String>, help: impl Into<String>) -> Reply {
+    Reply::Refused { error: error.into(), help: help.into() }
+}
+
+/// Order and its faults, with times from zero, if all of it makes sense.
+fn read(line: &str, joints: &[Joint<'_>]) -> Result<(Order, Vec<Fault>), Reply> {
+    let order: Order = serde_json::from_str(line)
+        .map_err(|error| refused(error.to_string(), "write one JSON object a line: docs/reference/twin.md"))?;
+    let numbers = [
+        ("load_N_m", order.load, -1e6, 1e6),
+        ("half_backlash_um", order.half_backlash, 0.0, 1e4),
+        ("supply_V", order.supply.map(f64::from), 0.0, 200.0),
+        ("motor_temperature_C", order.motor_temperature.map(f64::from), -50.0, 500.0),
+    ];
+    for (key, value, low, high) in numbers {
+        if value.is_some_and(|value| !(low..=high).contains(&value)) {
+            return Err(refused(format!("`{key}` is out of range"), format!("write a number from {low} to {high}")));
+        }
+    }
+    if let Some(id) = order.joint.filter(|id| joints.iter().all(|joint| joint.id != *id)) {
+        let known: Vec<String> = joints.iter().map(|joint| joint.id.to_string()).collect();
+        return Err(refused(format!("no joint has the identifier {id}"), format!("write one of {}", known.join(", "))));
+    }
+    let faults = match &order.fault {
+        Some(fault) => read_faults(&toml(fault)?).map_err(|problems| match problems.into_iter().next() {
+            Some(problem) => refused(problem.message, problem.help),
+            None => refused("the fault cannot be read", "docs/reference/hil-file.md lists the faults"),
+        })?,
+        None => Vec::new(),
+    };
+    Ok((order, faults))
+}
+
+/// Text of a fault as in a test file.
+fn toml(fault: &Map<String, Value>) -> Result<String, Reply> {
+    let mut text = "[[fault]]\n".to_owned();
+    for (key, value) in fault {
+        let is_plain = !key.is_empty() && key.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        match value {
+            Value::String(_) | Value::Number(_) | Value::Bool(_) if is_plain => {
+                // A string of JSON is one of TOML; both escape alike.
+                let _ = writeln!(text, "{key} = {value}");
+            }
+            _ => return Err(refused(format!("`{key}` of the fault has no plain value"), "write a number or a word")),
+        }
+    }
+    Ok(text)
+}
+
+fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
+    let mut states = Vec::new();
+    let time_s = joints.first().map_or(0.0, Joint::time);
+    for joint in joints.iter_mut().filter(|joint| order.joint.is_none_or(|id| joint.id == id)) {
+        let (now, seed) = (joint.time(), joint.seed());
+        if let Some(load) = order.load {
+            joint.rig().set_external_torque(load);
+        }
+        if let Some(half_backlash) = order.half_backlash {
+            joint.rig().set_half_backlash(1e-6 * half_backlash);
+        }
+        if let Some(supply) = order.supply {
+            joint.power.supply_voltage = supply;
+        }
+        if let Some(temperature) = order.motor_temperature {
+            joint.power.set_motor_temperature(temperature);
+        }
+        if order.end_faults {
+            joint.rig().end_faults(now);
+        }
+        for fault in faults {
+            joint.rig().inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
+        }
+        if order.status {
+            states.push(status(joint));
+        }
+    }
+    Reply::Done { time_s, joints: states }
+}
+
+fn status(joint: &Joint<'_>) -> Status {
+    let (truth, feedback) = (joint.truth(), joint.drive.feedback());
+    Status {
+        joint: joint.id,
+        name: joint.name.clone(),
+        state: format!("{:?}", joint.drive.state()),
+        fault: joint.drive.fault().map(|fault| format!("{fault:?}")),
+        position_turns: feedback.position.to_f32(),
+        output_turns: feedback.output_position.map(|position| position.to_f32()),
+        link_rad: truth.link,
+        gap_um: 1e6 * truth.gap,
+        half_backlash_um: 1e6 * truth.half_backlash,
+        load_torque: truth.load_torque,
+        motor_torque: truth.motor_torque,
+        bus: feedback.sensors.bus_voltage,
+        motor_temperature: feedback.sensors.motor_temperature,
+    }
+}

@@ -1,0 +1,325 @@
+//! A run of the twin: clients, bus, pace, control socket and log together.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+use report::failure::{Failure, Outcome};
+use report::interruption::{self, UninterruptedWork};
+use report::output;
+use report::progress::Progress;
+use scenario::rig::RunError;
+
+use crate::arguments::Arguments;
+use crate::bus::Bus;
+use crate::clock::Clock;
+use crate::control::{self, Socket};
+use crate::endpoint::{Client, Endpoint};
+use crate::event::{ClientId, Event};
+use crate::joint::{Choices, Joint, Prepared};
+use crate::log::TwinLog;
+use crate::protocol::DriveName;
+use crate::summary::Summary;
+use crate::wire::{Packet, WireName};
+
+/// Longest wait for an event, so that Ctrl-C is heard.
+const MAX_WAIT: Duration = Duration::from_millis(20);
+
+/// Runs the twin until its time is over or the user ends it.
+pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+    let wire = wire_of(arguments)?;
+    if arguments.lockstep.is_some_and(|step| !(0.001..=1000.0).contains(&step)) {
+        return Err(Failure::new("`--lockstep` is out of range").with_help("write 0.001 to 1000 ms"));
+    }
+    let choices = Choices {
+        drive: arguments.drive,
+        plant: arguments.plant,
+        seed: arguments.seed,
+        compensation: arguments.compensation,
+        is_calibrated: !arguments.uncalibrated,
+        supply: arguments.supply.unwrap_or(arguments.drive.usual_supply()),
+    };
+    progress.stage("designing the joints");
+    let prepared = joints(arguments)?
+        .iter()
+        .map(|(id, path)| Prepared::load(*id, Path::new(path), &choices))
+        .collect::<Outcome<Vec<_>>>()?;
+    let started = prepared.iter().map(|joint| joint.start(&choices)).collect::<Outcome<Vec<_>>>()?;
+    check_rates(&started)?;
+    let bus = Bus::new(started);
+    progress.clear();
+    let _orderly = UninterruptedWork::begin();
+    let (sender, events) = channel();
+    let (endpoint, client) = Endpoint::open(wire, arguments.port, arguments.link.as_deref(), &sender)?;
+    let _control = arguments.control.as_ref().map(|path| Socket::listen(path, &sender)).transpose()?;
+    let log = arguments.log.as_ref().map(|path| TwinLog::begin(path, &bus.joints, remarks(arguments))).transpose()?;
+    announce(arguments, wire, &endpoint.name, &bus)?;
+    let session = Session {
+        bus,
+        wire,
+        clients: client.into_iter().collect(),
+        log,
+        duration: arguments.duration.unwrap_or(f64::INFINITY),
+        received: 0,
+        sent: 0,
+        left: (0, 0),
+        started: Instant::now(),
+    };
+    let summary = match arguments.lockstep {
+        Some(step) => session.run_in_lockstep(&events, 1e-3 * step),
+        None => session.run_by_clock(&events, arguments.speed),
+    }?;
+    arguments.json.as_ref().map_or(Ok(()), |path| output::write_json(path, &output::json("summary", &summary)?))?;
+    output::print(&summary.text())
+}
+
+/// Wire that suits the drive.
+fn wire_of(arguments: &Arguments) -> Outcome<WireName> {
+    let wire = arguments.wire.unwrap_or(arguments.drive.usual_wire());
+    if (wire == WireName::Serial) != arguments.drive.is_serial() {
+        let (bus, help) = match arguments.drive.is_serial() {
+            true => ("a serial bus", "leave --wire out, or write --wire serial"),
+            false => ("a CAN bus", "write --wire slcan, fdcanusb or socketcand"),
+        };
+        return Err(Failure::new(format!("`{}` is on {bus}", arguments.drive.word())).with_help(help));
+    }
+    if wire == WireName::Socketcand && arguments.drive == DriveName::Moteus {
+        return Err(
+            Failure::new("socketcand has no CAN FD, which moteus needs").with_help("write --wire fdcanusb or slcan")
+        );
+    }
+    if wire == WireName::Socketcand && arguments.link.is_some() {
+        return Err(
+            Failure::new("--link names a pseudo-terminal, and socketcand has none").with_help("leave --link out")
+        );
+    }
+    Ok(wire)
+}
+
+/// Identifiers and files of the joints.
+fn joints(arguments: &Arguments) -> Outcome<Vec<(u8, String)>> {
+    if arguments.ids.is_empty() {
+        let file = arguments.file.as_deref().unwrap_or(Path::new("q1"));
+        return Ok(vec![(1, file.display().to_string())]);
+    }
+    let mut joints = Vec::new();
+    let most = arguments.drive.max_id();
+    for assignment in &arguments.ids {
+        let parsed = assignment.split_once('=').and_then(|(id, file)| Some((id.parse::<u8>().ok()?, file.to_owned())));
+        let Some((id, file)) = parsed.filter(|(id, file)| (1..=most).contains(id) && !file.is_empty()) else {
+            return Err(Failure::new(format!("--id {assignment}: this names no joint"))
+                .with_help(format!("write ID=FILE with an identifier from 1 to {most}, such as --id 1=q1")));
+        };
+        if joints.iter().any(|(known, _)| *known == id) {
+            return Err(Failure::new(format!("--id {assignment}: the identifier {id} is taken"))
+                .with_help("give each joint an identifier of its own"));
+        }
+        joints.push((id, file));
+    }
+    Ok(joints)
+}
+
+/// Joints of one bus run in step, so that they need one control rate.
+fn check_rates(joints: &[Joint<'_>]) -> Outcome<()> {
+    let Some(first) = joints.first() else { return Ok(()) };
+    match joints.iter().find(|joint| joint.period() != first.period()) {
+        None => Ok(()),
+        Some(other) => Err(Failure::new(format!(
+            "{} has a control rate of {:.0} Hz, {} of {:.0} Hz",
+            first.name,
+            1.0 / first.period(),
+            other.name,
+            1.0 / other.period()
+        ))
+        .with_help("write one control_rate_Hz into all joint files of a bus")),
+    }
+}
+
+fn remarks(arguments: &Arguments) -> BTreeMap<String, String> {
+    [
+        ("drive", arguments.drive.word()),
+        ("plant", arguments.plant.word().to_owned()),
+        ("seed", arguments.seed.to_string()),
+        ("compensation", arguments.compensation.to_string()),
+    ]
+    .into_iter()
+    .map(|(key, value)| (key.to_owned(), value))
+    .collect()
+}
+
+fn announce(arguments: &Arguments, wire: WireName, port: &str, bus: &Bus<'_>) -> Outcome<()> {
+    let joints: Vec<String> = bus.joints.iter().map(|joint| describe(joint)).collect();
+    let mut text = format!(
+        "port:     {port}\nclient:   {}\njoints:   {}\n",
+        arguments.drive.client(wire, port),
+        joints.join(", ")
+    );
+    if let Some(path) = &arguments.control {
+        text += &format!("control:  {}\n", path.display());
+    }
+    if arguments.duration.is_none() {
+        text += "Ctrl-C ends it\n";
+    }
+    output::print(&text)
+}
+
+/// Identifier, name and model of a joint.
+fn describe(joint: &Joint<'_>) -> String {
+    let model = joint.model.as_ref().map_or_else(String::new, |model| format!(" (type {model})"));
+    format!("{} = {}{model}", joint.id, joint.name)
+}
+
+/// Running twin.
+struct Session<'d> {
+    bus: Bus<'d>,
+    wire: WireName,
+    clients: Vec<Client>,
+    log: Option<TwinLog>,
+    /// Simulated time of the run [s].
+    duration: f64,
+    received: u64,
+    sent: u64,
+    /// Packets that clients who left did not read, and their malformed ones.
+    left: (u64, u64),
+    started: Instant,
+}
+
+impl Session<'_> {
+    fn run_by_clock(mut self, events: &Receiver<Event>, speed: f64) -> Outcome<Summary> {
+        let mut clock = Clock::new(speed);
+        while self.goes_on() {
+            let time = self.time();
+            let wait = clock.wait(time);
+            if wait.is_zero() {
+                clock.begin(time);
+                self.period()?;
+            }
+            // An event is handled at once, and so are all that wait; then the next period has its turn.
+            match events.recv_timeout(wait.min(MAX_WAIT)) {
+                Ok(event) => drop(self.handle(event)?),
+                Err(RecvTimeoutError::Timeout) => self.clients.iter_mut().for_each(Client::flush),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        let lateness = Some(clock.lateness());
+        self.finish(lateness)
+    }
+
+    fn run_in_lockstep(mut self, events: &Receiver<Event>, step: f64) -> Outcome<Summary> {
+        // The first period reads the encoders, so that the first answer has a position.
+        self.period()?;
+        let mut target = self.time();
+        while self.goes_on() {
+            match events.recv_timeout(MAX_WAIT) {
+                Ok(Event::Bytes { client, bytes, .. }) => {
+                    for (packet, is_complete) in self.packets(client, &bytes) {
+                        self.deliver(packet)?;
+                        target += if is_complete { step } else { 0.0 };
+                        let tolerance = 0.5 * self.bus.joints.first().map_or(step, |joint| joint.period());
+                        while self.time() + tolerance < target {
+                            self.period()?;
+                        }
+                    }
+                }
+                Ok(event) => drop(self.handle(event)?),
+                Err(RecvTimeoutError::Timeout) => self.clients.iter_mut().for_each(Client::flush),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        self.finish(None)
+    }
+
+    fn goes_on(&self) -> bool {
+        !interruption::requested() && self.time() < self.duration
+    }
+
+    fn time(&self) -> f64 {
+        self.bus.joints.first().map_or(0.0, |joint| joint.time())
+    }
+
+    fn period(&mut self) -> Outcome<()> {
+        let packets = self.bus.period().map_err(broken)?;
+        if let Some(log) = &mut self.log {
+            log.sample(&self.bus.joints)?;
+        }
+        self.send(&packets)
+    }
+
+    fn handle(&mut self, event: Event) -> Outcome<()> {
+        match event {
+            Event::Bytes { client, bytes, .. } => {
+                for (packet, _) in self.packets(client, &bytes) {
+                    self.deliver(packet)?;
+                }
+            }
+            Event::Connected(id, stream) => self.clients.push(Client::connected(id, self.wire, stream)),
+            Event::Left(id) => {
+                let (left, here) = std::mem::take(&mut self.clients).into_iter().partition(|client| client.id == id);
+                self.clients = here;
+                let left: Vec<Client> = left;
+                left.iter().for_each(|client| {
+                    self.left.0 += client.dropped;
+                    self.left.1 += client.malformed;
+                });
+            }
+            Event::Control(line, answer) => {
+                // A client of the socket that left does not wait for its answer.
+                let _ = answer.send(control::execute(&line, &mut self.bus.joints));
+            }
+        }
+        Ok(())
+    }
+
+    fn packets(&mut self, client: ClientId, bytes: &[u8]) -> Vec<(Packet, bool)> {
+        let client = self.clients.iter_mut().find(|known| known.id == client);
+        client.map_or_else(Vec::new, |client| client.receive(bytes))
+    }
+
+    fn deliver(&mut self, packet: Packet) -> Outcome<()> {
+        self.received += 1;
+        let time = self.time();
+        if let Some(log) = &mut self.log {
+            log.packet(time, &packet, true)?;
+        }
+        let answers = self.bus.receive(packet);
+        self.send(&answers)
+    }
+
+    fn send(&mut self, packets: &[Packet]) -> Outcome<()> {
+        let time = self.time();
+        for packet in packets {
+            self.sent += 1;
+            self.clients.iter_mut().for_each(|client| client.send(packet));
+            if let Some(log) = &mut self.log {
+                log.packet(time, packet, false)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, lateness: Option<crate::clock::Lateness>) -> Outcome<Summary> {
+        let time_s = self.time();
+        if let Some(log) = self.log.take() {
+            log.finish()?;
+        }
+        let sum = |of: fn(&Client) -> u64| self.clients.iter().map(of).sum::<u64>();
+        Ok(Summary {
+            schema: "joint-twin/1",
+            time_s,
+            elapsed_s: self.started.elapsed().as_secs_f64(),
+            received: self.received,
+            sent: self.sent,
+            dropped: self.left.0 + self.bus.cut_off + sum(|client| client.dropped),
+            malformed: self.left.1 + sum(|client| client.malformed),
+            lateness,
+        })
+    }
+}
+
+fn broken(error: RunError) -> Failure {
+    match error {
+        RunError::Broke(message) => Failure::check_failed(message),
+        other => Failure::check_failed(format!("the run ended: {other:?}")),
+    }
+}

@@ -157,8 +157,8 @@ impl Prepared {
         })
     }
 
-    /// Settings of a drive that fits the joint. Supply and no-load speed give the torque constant; the rated torque
-    /// heats the winding by its rated rise.
+    /// Settings of a drive that fits the joint. Its largest current gives the joint's largest torque, which gives the
+    /// torque constant; the rated torque heats the winding by its rated rise.
     fn settings(&self, choices: &Choices) -> Outcome<Settings> {
         let (joint, around) = (&self.case.truth.parameters, &self.case.truth.surroundings);
         let ratio = joint.geometry.ratio_by_teeth();
@@ -167,9 +167,9 @@ impl Prepared {
         let rotor_share = (joint.rotor_inertia * ratio * ratio) as f32 / inertia;
         let in_the_gap = ROTOR_CROSSOVER_RATIO * encoder_bandwidth * rotor_share.min(1.0);
         let bandwidth = (self.case.bandwidth(&self.test.file)?.min(MAX_BANDWIDTH) as f32).min(in_the_gap);
-        let torque_constant = choices.supply / around.speed_limit as f32;
         let rated = (joint.rated_output_torque / ratio) as f32;
         let torque_limit = around.torque_limit.min(1e6) as f32;
+        let torque_constant = torque_limit / choices.drive.peak_current();
         Ok(Settings {
             ratio: Ratio::new(ratio),
             period: 1.0 / around.control_rate as f32,

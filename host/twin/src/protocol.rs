@@ -62,6 +62,15 @@ impl DriveName {
         }
     }
 
+    /// Largest current of the motor [A], as the makers state it for their middle sizes.
+    pub fn peak_current(self) -> f32 {
+        match self {
+            Self::Feetech => 2.7,
+            Self::Cybergear | Self::Robstride => 23.0,
+            _ => 40.0,
+        }
+    }
+
     /// True for a drive on a serial bus.
     pub fn is_serial(self) -> bool {
         self == Self::Feetech

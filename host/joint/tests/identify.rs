@@ -8,16 +8,20 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use command::{Ended, SHORT_ROWS, folder, joint, json, text};
-use host_tests::extent::{cases, short_or_long};
+use command::{Ended, SHORT_ROWS, first_rows, folder, joint, json, text};
+use host_tests::extent::{cases, is_long, short_or_long};
 use identify::virtual_test::record;
 use serde_json::Value;
 
-/// Log of the recommended test, its first rows in the short form.
-fn recorded(name: &str, seed: u64, with_output_torque: bool) -> String {
-    let truth = joint_file::read(joint_file::preset(name).expect("a preset")).expect("a joint");
-    let log = record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque);
-    log.lines().take(1 + short_or_long(SHORT_ROWS, usize::MAX - 1)).map(|line| format!("{line}\n")).collect()
+/// Whole log of the recommended test of Q1.
+fn recorded(seed: u64, with_output_torque: bool) -> String {
+    let truth = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+    record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque)
+}
+
+/// Log, its first rows in the short form.
+fn shortened(log: &str) -> String {
+    if is_long() { log.to_owned() } else { first_rows(log, SHORT_ROWS) }
 }
 
 /// Findings for the recommended test of a changed joint, identified with the unchanged joint file.
@@ -133,7 +137,7 @@ fn intervals_contain_true_values() {
 
 #[test]
 fn lost_samples_and_jitter_are_noted() {
-    let recording = recorded("q1", 41, false);
+    let recording = shortened(&recorded(41, false));
     let rows: Vec<(f64, &str)> = recording
         .lines()
         .skip(1)
@@ -176,7 +180,7 @@ fn wrong_inertia_widens_interval_and_is_noted() {
     let folder = folder();
     let log = folder.path().join("log.csv");
     let common = ["identify", text(&log), "--joint", "q1"];
-    fs::write(&log, recorded("q1", 31, false)).expect("written");
+    fs::write(&log, shortened(&recorded(31, false))).expect("written");
     let identified = |set: &str, out: &str| {
         let out = folder.path().join(out);
         joint(&[&common[..], &["--set", set, "--out", text(&out)]].concat()).succeeded();
@@ -559,6 +563,7 @@ fn any_counts_per_turn_identified() {
         joint(&[&["identify", text(&log), "--joint", "q1"], &sets[..], more].concat())
     };
     identify(20_000, &["--simulate", "--seed", "31"]).succeeded();
+    fs::write(&log, shortened(&fs::read_to_string(&log).expect("written"))).expect("room");
     identify(20_000, &["--out", text(&out)]).succeeded();
     let page = fs::read_to_string(out.join("report.html")).expect("written");
     assert!(page.contains("Encoders of 20000 counts (motor) and 100000 counts (output)."));
@@ -741,7 +746,12 @@ const WRONG: [Wrong; 30] = [
 ];
 
 /// Simulated log of Q1: rows of time, counts of motor and output, torque.
-static SIMULATED: LazyLock<Rows> = LazyLock::new(|| columns(&recorded("q1", 31, false)));
+static SIMULATED: LazyLock<Rows> = LazyLock::new(|| columns(&recorded(31, false)));
+
+/// Rows of the simulated log, the first of them in the short form.
+fn simulated_rows() -> Rows {
+    SIMULATED[..short_or_long(SHORT_ROWS, SIMULATED.len())].to_vec()
+}
 
 /// Parses the rows of a log with `N` columns, without the header.
 fn columns<const N: usize>(log: &str) -> Vec<[f64; N]> {
@@ -765,7 +775,8 @@ fn write_rows(path: &Path, rows: &[[f64; 4]], angles: bool) {
 #[test]
 fn contradictory_log_rejected_with_cause() {
     let folder = folder();
-    let rows = &*SIMULATED;
+    // The first quick reversals show these errors.
+    let rows = &SIMULATED[..short_or_long(20_000, SIMULATED.len())];
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     for wrong in WRONG {
         println!("{}", wrong.what);
@@ -847,7 +858,7 @@ fn late(rows: &Rows, samples: usize) -> Rows {
 #[test]
 fn log_wrong_as_a_whole_rejected() {
     let folder = folder();
-    let rows = &*SIMULATED;
+    let rows = &simulated_rows();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     for (what, change, named) in WRONG_AS_A_WHOLE {
         println!("{what}");
@@ -868,7 +879,7 @@ fn log_wrong_as_a_whole_rejected() {
 #[ignore = "half a minute and more: .ci/attack"]
 fn filtered_angles_rejected_torque_errors_widen() {
     let folder = folder();
-    let rows = &*SIMULATED;
+    let rows = &simulated_rows();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let smoothed = |milliseconds: f64| {
         let by = 1.0 - (-0.1 / milliseconds).exp();
@@ -913,7 +924,7 @@ fn filtered_angles_rejected_torque_errors_widen() {
 fn contradicting_output_torque_rejected() {
     let folder = folder();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
-    let log = recorded("q1", 9, true);
+    let log = shortened(&recorded(9, true));
     let head = log.lines().next().expect("a head");
     let rows: Vec<[f64; 5]> = columns(&log);
     let most = rows.iter().map(|row| row[3].abs()).fold(0.0, f64::max);
@@ -926,7 +937,7 @@ fn contradicting_output_torque_rejected() {
         joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(words);
         assert!(!out.exists(), "{what}: nothing is written");
     };
-    refused("another time step", &["inertias of motor and link are 1.2", "samples are 1.1"], &|row| row[0] *= 1.1);
+    refused("another time step", &["inertias of motor and link are 1.2", "samples are 1."], &|row| row[0] *= 1.1);
     refused("another scale", &["inertias of motor and link are 1.299", "in another unit"], &|row| row[4] *= 1.3);
     refused("the other sign", &["the torque at the output is -1.0", "other sign"], &|row| row[4] = -row[4]);
     refused("a clipped drive", &["is not in proportion", "clipped"], &|row| {
@@ -954,6 +965,7 @@ fn periodic_errors_do_not_bias_gap() {
         }
     };
     joint(&[&["identify", text(&log), "--joint", "q1", "--simulate", "--seed", "5"], &sets[..]].concat()).succeeded();
+    fs::write(&log, shortened(&fs::read_to_string(&log).expect("written"))).expect("room");
     joint(&[&["identify", text(&log), "--joint", "q1", "--out", text(&out)], &sets[..]].concat()).succeeded();
     let record = json(&out.join("findings.json"));
     holds(&record, &[(BACKLASH, 40.0), (STIFFNESS, 10.3e3)]);
@@ -976,7 +988,7 @@ fn periodic_errors_do_not_bias_gap() {
 #[test]
 fn harmless_deviations_accepted() {
     let folder = folder();
-    let rows = &*SIMULATED;
+    let rows = &simulated_rows();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let turn = [TAU / 16384.0, TAU / 131_072.0];
     let wrapped = |[time, motor, output, torque]: [f64; 4]| {
@@ -1000,7 +1012,7 @@ fn units_from_options_or_map() {
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     // Log in the form of a maker's table: turns, output torque, milliseconds.
     let mut log = "t;ENCODER_0_POSITION;ENCODER_1_POSITION;TORQUE\n".replace(';', ",");
-    for &[time, motor, output, torque] in SIMULATED.iter() {
+    for [time, motor, output, torque] in simulated_rows() {
         let [time, torque] = [1e3 * time, 6.0 * torque];
         writeln!(log, "{time},{},{},{torque}", motor / 16384.0, output / 131_072.0).expect("a string");
     }

@@ -278,9 +278,9 @@ fn equivalent_gear_needs_output_torque() {
 /// Sine of a test file at one amplitude: joint, frequency [Hz] and amplitude [rad].
 type Sine = (&'static str, f64, f64);
 
-/// One sine for each joint, and a slower one, which reveals more.
+/// A slow sine, which reveals more, and one sine for each joint. The short form has the first two.
 const SINES: [Sine; 5] =
-    [("q1", 4.0, 0.072), ("d2", 4.0, 0.067), ("l1", 2.0, 0.4), ("s1", 10.0, 0.147), ("q1", 2.0, 0.288)];
+    [("q1", 2.0, 0.288), ("d2", 4.0, 0.067), ("q1", 4.0, 0.072), ("l1", 2.0, 0.4), ("s1", 10.0, 0.147)];
 
 /// Further sines of the long form.
 const MORE_SINES: [Sine; 7] = [
@@ -296,9 +296,10 @@ const MORE_SINES: [Sine; 7] = [
 /// A sine of one amplitude carries little information: each stated interval must still contain the truth.
 #[test]
 fn single_amplitude_sine_findings_are_true() {
-    let (found, told_why) = check_sines(&SINES);
-    assert!(found > 3, "{found} values: what a sine does show is not refused");
-    assert!(told_why > 1, "why the rest is not found is told of {told_why}");
+    let (found, told_why) = check_sines(cases(&SINES, 2));
+    let (found_min, told_min) = short_or_long((2, 1), (4, 2));
+    assert!(found >= found_min, "{found} values: what a sine does show is not refused");
+    assert!(told_why >= told_min, "why the rest is not found is told of {told_why}");
 }
 
 #[test]
@@ -775,8 +776,7 @@ fn write_rows(path: &Path, rows: &[[f64; 4]], angles: bool) {
 #[test]
 fn contradictory_log_rejected_with_cause() {
     let folder = folder();
-    // The first quick reversals show these errors.
-    let rows = &SIMULATED[..short_or_long(20_000, SIMULATED.len())];
+    let rows = &simulated_rows();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     for wrong in WRONG {
         println!("{}", wrong.what);
@@ -858,7 +858,8 @@ fn late(rows: &Rows, samples: usize) -> Rows {
 #[test]
 fn log_wrong_as_a_whole_rejected() {
     let folder = folder();
-    let rows = &simulated_rows();
+    // Three of the four slow reversals are needed to tell a scale of one direction from a constant torque.
+    let rows = &SIMULATED[..short_or_long(100_000, SIMULATED.len())].to_vec();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     for (what, change, named) in WRONG_AS_A_WHOLE {
         println!("{what}");
@@ -938,7 +939,7 @@ fn contradicting_output_torque_rejected() {
         assert!(!out.exists(), "{what}: nothing is written");
     };
     refused("another time step", &["inertias of motor and link are 1.2", "samples are 1."], &|row| row[0] *= 1.1);
-    refused("another scale", &["inertias of motor and link are 1.299", "in another unit"], &|row| row[4] *= 1.3);
+    refused("another scale", &["inertias of motor and link are 1.29", "in another unit"], &|row| row[4] *= 1.3);
     refused("the other sign", &["the torque at the output is -1.0", "other sign"], &|row| row[4] = -row[4]);
     refused("a clipped drive", &["is not in proportion", "clipped"], &|row| {
         row[3] = row[3].clamp(-0.8 * most, 0.8 * most)
@@ -972,7 +973,9 @@ fn periodic_errors_do_not_bias_gap() {
     assert!(found(&record, MOTOR_DRY).is_none(), "{record}");
     assert!(record["assumptions"].to_string().contains("out of phase"), "{record}");
     // Encoder error of 0.2 degrees three times a turn of the motor, and a true efficiency of 0.97.
-    let wavy = each(&SIMULATED, |row| {
+    // The friction of the motor needs two slow reversals.
+    let rows = SIMULATED[..short_or_long(84_000, SIMULATED.len())].to_vec();
+    let wavy = each(&rows, |row| {
         let [motor, output] = [row[1] * TAU / 16384.0, row[2] * TAU / 131_072.0];
         (row[1], row[2]) = (motor + 0.2_f64.to_radians() * (3.0 * motor).sin(), output);
     });

@@ -20,9 +20,9 @@ use scenario::suite::{Test, from_text};
 use super::{on_reference, run, run_in};
 
 /// Joints with teeth and equivalent gears, ratios from 6 to 100.
-const JOINTS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
+const JOINTS: [&str; 5] = ["q1", "l1", "c1", "s1", "d2"];
 
-/// Joints of the short form: a wide gap, a gap hidden by the transmission error, an equivalent gear.
+/// Joints of the short form: a compliant joint, a large stiff joint, an equivalent gear.
 const SHORT_JOINTS: usize = 3;
 
 /// Joints and seeds of a test: `long` seeds from the first one on, one in the short form.

@@ -117,7 +117,9 @@ fn hidden_gap_has_no_valid_contact() {
 /// Cogging is estimated while the link turns slowly, and left alone otherwise.
 #[test]
 fn cogging_is_learnt_in_slow_motion() {
-    for &(name, amplitude, periods, seed) in cases(&[("q1", 0.03, 60, 72), ("q1", 0.02, 84, 71), ("q1", 0.0, 84, 73)], 1) {
+    for &(name, amplitude, periods, seed) in
+        cases(&[("q1", 0.03, 60, 72), ("q1", 0.02, 84, 71), ("q1", 0.0, 84, 73)], 1)
+    {
         let mut experiment = Experiment::new(name, "slow", Encoders::Preset, Some(40e-6), seed).lasting(5.0);
         let around = &mut experiment.setup.train.surroundings;
         (around.cogging_torque, around.cogging_periods_per_turn) = (amplitude, periods);

@@ -425,7 +425,7 @@ fn documented_example_passes() {
     let (example, _) = rest.split_once("```").expect("its end");
     let seeds = "\nseeds = 5\n";
     assert!(example.contains(seeds), "the example has five seeds");
-    let example = example.replace(seeds, short_or_long("\nseeds = 2\n", seeds));
+    let example = example.replace(seeds, short_or_long("\nseeds = 1\n", seeds));
     let folder = folder();
     let file = folder.path().join("example.toml");
     fs::write(&file, example).expect("a file");

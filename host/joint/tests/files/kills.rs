@@ -17,7 +17,7 @@ use crate::tree::{Tree, WRITTEN_LIST, assert_same, is_equal, results, tree};
 use crate::writers::{Writer, empty_folder};
 
 /// Kills of each command in the short run, and of each slow command.
-const KILLS: u32 = 3;
+const KILLS: u32 = 6;
 const SLOW_KILLS: u32 = 1;
 
 fn variable(name: &str) -> Option<u64> {

@@ -8,6 +8,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
+use host_tests::extent::short_or_long;
 use host_tests::tolerance::compensation::{
     LOW_TORQUE_PEAK, LOW_TORQUE_PEAK_NO_PREVIEW, LOW_TORQUE_RMS, LOW_TORQUE_RMS_NO_PREVIEW, LOW_TORQUE_SETTLING,
     NEAR_LIMIT_PEAK, NEAR_LIMIT_RMS,
@@ -295,7 +296,7 @@ fn time_optimal(run: &Run, case: &Case, motion: &LowTorqueMotion) -> f64 {
 /// Moves that need up to three times the torque limit end in time, with errors close to PID's.
 #[test]
 fn moves_short_of_torque_end_in_time() {
-    let runs = [Preview, NoPreview].map(|mode| (0..8).map(move |seed| (mode, seed)));
+    let runs = [Preview, NoPreview].map(|mode| (0..short_or_long(3, 8)).map(move |seed| (mode, seed)));
     let runs: Vec<_> = runs.into_iter().flatten().collect();
     let outcomes: Vec<_> =
         runs.par_iter().map(|&(mode, seed)| (mode, seed, Outcome::of(MotionKind::MinimumJerk, mode, seed))).collect();
@@ -340,7 +341,7 @@ rms_gain_over_pid = ">= 1"
 #[test]
 fn sine_near_torque_limit_follows() {
     let test = from_text("near-limit.toml", NEAR_LIMIT, Path::new("."), PlantName::Core).expect("a good test");
-    let ratios: Vec<_> = (1..9)
+    let ratios: Vec<_> = (1..short_or_long(4, 9))
         .into_par_iter()
         .map(|seed| {
             let case = test.case(seed).expect("a case of the test");

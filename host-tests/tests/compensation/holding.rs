@@ -1,5 +1,6 @@
 //! Holding a position: under a disturbance, and after a push with and without dry friction.
 
+use host_tests::extent::cases;
 use host_tests::tolerance::compensation::{
     FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID, UNKNOWN_FREE_HOLD_OVER_PID, UNKNOWN_FREE_HOLD_SWING,
 };
@@ -51,7 +52,8 @@ fn free_hold_with_known_gap_rarely_crosses() {
 #[test]
 fn free_hold_learns_unknown_gap() {
     let test = shipped("free-hold-no-friction");
-    for seed in 114..120 {
+    // Plain control alone exceeds the bound with the first seed.
+    for &seed in cases(&[116, 114, 115, 117, 118, 119], 1) {
         let (ours, cascade) = (figures(&test, seed, NoPreview), figures(&test, seed, LoadCascade));
         assert!(ours.crossings < cascade.crossings, "{} crossings against {}", ours.crossings, cascade.crossings);
         UNKNOWN_FREE_HOLD_SWING.check(ours.peak_to_peak / LOST_MOTION);

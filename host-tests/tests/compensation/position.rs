@@ -1,5 +1,8 @@
 //! Position mode, with and without preview, against motor PID and the best rival.
 
+use std::sync::LazyLock;
+
+use host_tests::extent::{cases, is_long};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL,
     CROSSING_TIME, CROSSING_TIME_WITHOUT_PREVIEW, HIDDEN_GAP_OVER_PID, ONE_FLANK_OVER_PID, PEAK_MESH_FORCE,
@@ -51,13 +54,17 @@ fn with_transmission_error(mut joint: JointParameters, size: f64) -> JointParame
     joint
 }
 
-fn check_against_rivals(test: &Test, seed: u64) {
-    check_case_against_rivals(test, &test.case(seed).expect("a case of the test"), seed);
+/// Modes of the compensation; the short form runs the first.
+const PREVIEW_FIRST: [ControllerName; 2] = [Preview, NoPreview];
+const NO_PREVIEW_FIRST: [ControllerName; 2] = [NoPreview, Preview];
+
+fn check_against_rivals(test: &Test, seed: u64, modes: &[ControllerName; 2]) {
+    check_case_against_rivals(test, &test.case(seed).expect("a case of the test"), seed, modes);
 }
 
-fn check_case_against_rivals(test: &Test, case: &Case, seed: u64) {
+fn check_case_against_rivals(test: &Test, case: &Case, seed: u64, modes: &[ControllerName; 2]) {
     let [pid, rival] = [MotorPid, OutputIntegral].map(|rival| figures_in(test, case, seed, rival));
-    for controller in [Preview, NoPreview] {
+    for &controller in cases(modes, 1) {
         let ours = figures_in(test, case, seed, controller);
         println!("{} {}: {ours:?}", test.stem(), controller.word());
         COMPENSATED_OVER_PID.check(ours.rms / pid.rms);
@@ -72,19 +79,19 @@ fn check_case_against_rivals(test: &Test, case: &Case, seed: u64) {
 /// The compensation beats motor PID and rival in slow motion, in which friction dominates.
 #[test]
 fn slow_motion_beats_rivals() {
-    check_against_rivals(&shipped("t1"), 101);
+    check_against_rivals(&shipped("t1"), 101, &PREVIEW_FIRST);
 }
 
 /// The compensation beats motor PID and rival in fast motion, in which inertia dominates.
 #[test]
 fn inertial_motion_beats_rivals() {
-    check_against_rivals(&shipped("t2"), 102);
+    check_against_rivals(&shipped("t2"), 102, &NO_PREVIEW_FIRST);
 }
 
 /// The compensation beats motor PID and rival under a swinging weight.
 #[test]
 fn swinging_weight_beats_rivals() {
-    check_against_rivals(&shipped("t2b"), 103);
+    check_against_rivals(&shipped("t2b"), 103, &NO_PREVIEW_FIRST);
 }
 
 /// Without preview, a slow weight causes few crossings back to the flank just left.
@@ -110,7 +117,7 @@ fn slow_weight_causes_few_needless_crossings() {
 /// The compensation beats motor PID and rival in random motion.
 #[test]
 fn random_motion_beats_rivals() {
-    check_against_rivals(&shipped("random"), 104);
+    check_against_rivals(&shipped("random"), 104, &PREVIEW_FIRST);
 }
 
 /// Fast steps without preview beat motor PID.
@@ -126,7 +133,7 @@ fn steps_without_preview_beat_pid() {
 #[test]
 fn oscillation_keeps_mesh_force_limit() {
     let (test, seed) = (shipped("steps-no-preview"), 112);
-    for stiffness in [20e3, 6e3] {
+    for &stiffness in cases(&[20e3, 6e3], 1) {
         let case = case_of(&test, seed, &with_compliance(stiffness), &DriveTrainParameters::q1());
         let ours = figures_in(&test, &case, seed, NoPreview);
         println!("{stiffness}: {ours:?}");
@@ -150,19 +157,26 @@ fn large_joint_steps_match_pid() {
     STIFF_JOINT_STEPS_OVER_PID.check(ours.rms / pid.rms);
 }
 
+/// Figures of the compensation and of motor PID in slow motion with ideal encoders.
+fn slow_with_ideal_encoders(seed: u64) -> [Figures; 2] {
+    let test = shipped("t1");
+    against_pid(&test, &case_of(&test, seed, &q1(), &with_ideal_encoders()), seed, Preview)
+}
+
+/// Figures of one seed, for both tests of the short form.
+static SLOW_WITH_IDEAL_ENCODERS: LazyLock<[Figures; 2]> = LazyLock::new(|| slow_with_ideal_encoders(110));
+
 /// Friction is separated from weight before the gap is known.
 #[test]
 fn friction_is_separated_from_weight() {
-    let (test, seed) = (shipped("t1"), 110);
-    let [ours, pid] = against_pid(&test, &case_of(&test, seed, &q1(), &with_ideal_encoders()), seed, Preview);
+    let [ours, pid] = &*SLOW_WITH_IDEAL_ENCODERS;
     SLOW_PEAK_OVER_PID.check(ours.peak / pid.peak);
 }
 
 /// Torque attributed to the motor stays in the feed-forward term long after it was last measured.
 #[test]
 fn motor_loss_feedforward_persists() {
-    let (test, seed) = (shipped("t1"), 111);
-    let [ours, pid] = against_pid(&test, &case_of(&test, seed, &q1(), &with_ideal_encoders()), seed, Preview);
+    let [ours, pid] = if is_long() { &slow_with_ideal_encoders(111) } else { &*SLOW_WITH_IDEAL_ENCODERS };
     SLOW_OVER_PID.check(ours.rms / pid.rms);
 }
 
@@ -178,7 +192,7 @@ fn stiff_train_lands_softly() {
 /// A torque constant wrong by 5 % costs little.
 #[test]
 fn wrong_torque_constant_costs_little() {
-    check_against_rivals(&changed("t2", "", "[known]\ntorque_constant_error_ratio = 0.05"), 107);
+    check_against_rivals(&changed("t2", "", "[known]\ntorque_constant_error_ratio = 0.05"), 107, &PREVIEW_FIRST);
 }
 
 /// Gears with a transmission error at each mesh.
@@ -188,7 +202,7 @@ fn transmission_error_beats_rivals() {
     // whether a crossing counts 7 or 25 ms.
     let (test, seed) = (shipped("t2b"), 108);
     let case = case_of(&test, seed, &with_transmission_error(q1(), 6e-6), &DriveTrainParameters::q1());
-    check_case_against_rivals(&test, &case, seed);
+    check_case_against_rivals(&test, &case, seed, &NO_PREVIEW_FIRST);
 }
 
 /// Load torque is fed forward although a transmission error as large as the gap hides the gap.
@@ -218,11 +232,12 @@ fn one_flank_load_is_positioned() {
 fn motor_follows_transmission_error() {
     // A motor at the link's speed would be late at every tooth.
     let (test, joint) = (shipped("t2"), with_transmission_error(q1(), 12e-6));
-    let ratios = [108, 109, 110].map(|seed| {
+    let ratios = cases(&[110, 109, 108], 1).iter().map(|&seed| {
         let case = case_of(&test, seed, &joint, &DriveTrainParameters::q1());
         let [ours, pid] = against_pid(&test, &case, seed, Preview);
         ours.rms / pid.rms
     });
+    let ratios: Vec<f64> = ratios.collect();
     println!("{ratios:?}");
-    TRANSMISSION_ERROR_OVER_PID.check(ratios.iter().sum::<f64>() / 3.0);
+    TRANSMISSION_ERROR_OVER_PID.check(ratios.iter().sum::<f64>() / ratios.len() as f64);
 }

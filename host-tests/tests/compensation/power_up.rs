@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use host_tests::extent::{cases, short_or_long};
 use model_core::gears::Kinematics;
 use reference::closed_loop::{Figures, Run, Sample};
 use reference::joint::{RelativeState, Start};
@@ -19,7 +20,16 @@ use scenario::suite::{Test, from_text};
 use super::{on_reference, run, run_in};
 
 /// Joints with teeth and equivalent gears, ratios from 6 to 100.
-const JOINTS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
+const JOINTS: [&str; 5] = ["q1", "l1", "c1", "s1", "d2"];
+
+/// Joints of the short form: a compliant joint, a large stiff joint, an equivalent gear.
+const SHORT_JOINTS: usize = 3;
+
+/// Joints and seeds of a test: `long` seeds from the first one on, one in the short form.
+fn joints_and_seeds(first: u64, long: u64) -> impl Iterator<Item = (&'static str, u64)> {
+    let seeds = first..first + short_or_long(1, long);
+    cases(&JOINTS, SHORT_JOINTS).iter().flat_map(move |joint| seeds.clone().map(|seed| (*joint, seed)))
+}
 
 /// Hold after a push.
 fn hold(joint: &str, faults: &str) -> Test {
@@ -38,29 +48,25 @@ fn lost_motion(test: &Test, seed: u64) -> f64 {
 /// Encoder zeros at any angle cost no crossing, compared with the same joint whose zeros are at the start.
 #[test]
 fn any_encoder_zeros_hold_still() {
-    for joint in JOINTS {
+    for (joint, seed) in joints_and_seeds(700, 3) {
         let test = hold(joint, "");
-        for seed in 700..703 {
-            let case = test.case(seed).expect("a case of the test");
-            let mut homed = test.case(seed).expect("a case of the test");
-            homed.zeros = EncoderZeros::default();
-            let [mounted, homed] = [case, homed]
-                .map(|case| Figures::of(&run_in(&test, &case, seed, on_reference(NoPreview)).run, test.file.settle));
-            assert!(mounted.crossings <= homed.crossings + 2, "{joint}, seed {seed}: {mounted:?} {homed:?}");
-            assert!(mounted.peak <= 1.1 * homed.peak + 2e-4, "{joint}, seed {seed}: {mounted:?} {homed:?}");
-        }
+        let case = test.case(seed).expect("a case of the test");
+        let mut homed = test.case(seed).expect("a case of the test");
+        homed.zeros = EncoderZeros::default();
+        let [mounted, homed] = [case, homed]
+            .map(|case| Figures::of(&run_in(&test, &case, seed, on_reference(NoPreview)).run, test.file.settle));
+        assert!(mounted.crossings <= homed.crossings + 2, "{joint}, seed {seed}: {mounted:?} {homed:?}");
+        assert!(mounted.peak <= 1.1 * homed.peak + 2e-4, "{joint}, seed {seed}: {mounted:?} {homed:?}");
     }
 }
 
 /// A link that turns at 1 rad/s at power-up is caught with at most 1.1 times PID's peak.
 #[test]
 fn turning_joint_is_caught() {
-    for joint in JOINTS {
+    for (joint, seed) in joints_and_seeds(710, 2) {
         let test = hold(joint, "");
-        for seed in 710..712 {
-            let [ours, pid] = [NoPreview, MotorPid].map(|controller| turning(&test, seed, controller));
-            assert!(ours.peak <= 1.1 * pid.peak, "{joint}, seed {seed}: {ours:?} {pid:?}");
-        }
+        let [ours, pid] = [NoPreview, MotorPid].map(|controller| turning(&test, seed, controller));
+        assert!(ours.peak <= 1.1 * pid.peak, "{joint}, seed {seed}: {ours:?} {pid:?}");
     }
 }
 
@@ -68,13 +74,11 @@ fn turning_joint_is_caught() {
 #[test]
 fn silent_output_at_rest_holds_still() {
     let lost = "[[fault]]\nkind = \"lost_frames\"\nframes = \"output\"\nshare = 1\nstart_s = 3\nend_s = 5";
-    for joint in JOINTS {
+    for (joint, seed) in joints_and_seeds(720, 2) {
         let test = hold(joint, lost);
-        for seed in 720..722 {
-            let run = run(&test, seed, NoPreview).run;
-            let peak = Figures::of(&run, 3.0).peak;
-            assert!(peak <= lost_motion(&test, seed) + 1e-3, "{joint}, seed {seed}: {peak} rad");
-        }
+        let run = run(&test, seed, NoPreview).run;
+        let peak = Figures::of(&run, 3.0).peak;
+        assert!(peak <= lost_motion(&test, seed) + 1e-3, "{joint}, seed {seed}: {peak} rad");
     }
 }
 
@@ -82,14 +86,12 @@ fn silent_output_at_rest_holds_still() {
 #[test]
 fn late_output_at_power_up_waits() {
     let late = "[[fault]]\nkind = \"lost_frames\"\nframes = \"output\"\nshare = 1\nstart_s = 0\nend_s = 0.1";
-    for joint in JOINTS {
-        for seed in 730..732 {
-            let history = run(&hold(joint, late), seed, NoPreview);
-            let asked = |period: usize| history.run.samples[period].command;
-            assert!((0..990).all(|period| asked(period) == 0.0), "{joint}, seed {seed} drives blindly");
-            let peak = Figures::of(&history.run, 0.2).peak;
-            assert!(peak < 0.05, "{joint}, seed {seed}: {peak} rad");
-        }
+    for (joint, seed) in joints_and_seeds(730, 2) {
+        let history = run(&hold(joint, late), seed, NoPreview);
+        let asked = |period: usize| history.run.samples[period].command;
+        assert!((0..990).all(|period| asked(period) == 0.0), "{joint}, seed {seed} drives blindly");
+        let peak = Figures::of(&history.run, 0.2).peak;
+        assert!(peak < 0.05, "{joint}, seed {seed}: {peak} rad");
     }
 }
 

@@ -6,6 +6,7 @@
 
 use board::device::board::Board;
 use board::device::tick_time::RateCheck;
+use host_tests::extent::cases;
 use host_tests::tolerance::certificate::{OTHER_ABOVE_BOUND, STANDARD_ABOVE_BOUND, TYPICAL, TYPICAL_MEDIAN};
 use parameters::JointParameters;
 use rayon::prelude::*;
@@ -88,8 +89,8 @@ fn table_row(
     )
 }
 
-fn check(seeds: impl IntoParallelIterator<Item = u64>, longest: f64) {
-    let all: Vec<Comparison> = seeds.into_par_iter().map(|seed| compare(seed, longest)).collect();
+fn check(seeds: &[u64], longest: f64) {
+    let all: Vec<Comparison> = seeds.par_iter().map(|seed| compare(*seed, longest)).collect();
     let mut factors: Vec<f64> =
         all.iter().flat_map(|one| &one.ratios).map(|ratio| ratio.max(1.0 / ratio) - 1.0).collect();
     factors.sort_by(f64::total_cmp);
@@ -104,11 +105,11 @@ fn from_environment(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |typed| typed.parse().expect("a whole number"))
 }
 
-/// Stated errors match measured errors on six random joints, on shortened motions.
+/// Stated errors match measured errors on random joints, two in the short form, on shortened motions.
 #[test]
 fn certificate_matches_sim() {
     // Cut off a tenth of a second after the first crossing of the gap.
-    check(100..106, 1.3);
+    check(cases(&[103, 101, 100, 102, 104, 105], 2), 1.3);
 }
 
 /// Stated errors match measured errors on fifty random joints.
@@ -117,5 +118,6 @@ fn certificate_matches_sim() {
 fn certificate_matches_sim_on_fifty_joints() {
     let first = from_environment("CERTIFICATE_SEED", 1000);
     let longest = 1e-3 * from_environment("CERTIFICATE_MS", 60_000) as f64;
-    check(first..first + from_environment("CERTIFICATE_JOINTS", 50), longest);
+    let seeds: Vec<u64> = (first..first + from_environment("CERTIFICATE_JOINTS", 50)).collect();
+    check(&seeds, longest);
 }

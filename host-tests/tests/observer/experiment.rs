@@ -1,6 +1,7 @@
 //! Experiments with the observer: a joint in motion, and an observer with a wrong nominal width and compliance and without knowledge of
 //! offset, skew and encoder errors.
 
+use host_tests::extent::short_or_long;
 use model_core::gears::Kinematics;
 use model_core::numbers::Real;
 use model_core::observer::design::{ObserverSettings, design_observer};
@@ -72,10 +73,9 @@ impl Experiment {
         }
         let settings = settings(&train);
         let motion = profile.motion(seed);
-        // Adaptive steps keep the plant's error below the tested errors of the estimates, fractions of a percent.
         let setup = Setup {
             start: Start::Still,
-            stepping: Stepping::Adaptive,
+            stepping: short_or_long(Stepping::Fixed, Stepping::Adaptive),
             ..Setup::new(joint, train, motion, duration, seed)
         };
         Self { setup, nominal, settings }

@@ -1,23 +1,44 @@
 //! Late readings, by their own time stamps: no estimate diverges, unknown quantities are marked invalid, and a returning encoder is used
 //! again.
 
-use crate::recording::PeriodSample;
+use std::sync::LazyLock;
+
+use host_tests::extent::cases;
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{OutputFault, Samples, Source};
 
 use crate::experiment::{Encoders, Experiment};
 use crate::motion::TestMotion;
+use crate::recording::PeriodSample;
 use crate::replay::samples;
 
 /// Periods in which readings are late.
 const LATE_PERIODS: core::ops::Range<usize> = 15_000..20_000;
 
+/// Experiment and its recording.
+type Recorded = (Experiment, Vec<PeriodSample>);
+
 /// Experiment on a joint that swings against its inertia, and its recording.
-fn to_and_fro(name: &str, profile: TestMotion) -> (Experiment, Vec<PeriodSample>) {
+fn swung(name: &str, amplitude: f64) -> Recorded {
     let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
-    experiment.setup.motion = profile.motion(experiment.setup.seed);
+    experiment.setup.motion = TestMotion::Sine(amplitude, 1.0).motion(experiment.setup.seed);
     let log = experiment.record();
     (experiment, log)
+}
+
+/// Wide swing of a joint, recorded once for all tests.
+fn to_and_fro(name: &str) -> &'static Recorded {
+    static Q1: LazyLock<Recorded> = LazyLock::new(|| swung("q1", 0.5));
+    static L1: LazyLock<Recorded> = LazyLock::new(|| swung("l1", 0.5));
+    static D2: LazyLock<Recorded> = LazyLock::new(|| swung("d2", 0.5));
+    static S1: LazyLock<Recorded> = LazyLock::new(|| swung("s1", 0.5));
+    match name {
+        "q1" => &Q1,
+        "l1" => &L1,
+        "d2" => &D2,
+        "s1" => &S1,
+        other => panic!("no swing of {other}"),
+    }
 }
 
 /// Samples of `late` periods ago.
@@ -28,13 +49,13 @@ fn delayed_samples(experiment: &Experiment, log: &[PeriodSample], period: usize,
 /// Late output readings up to ten periods old still give the present gap.
 #[test]
 fn late_output_readings_locate_the_gap() {
-    for name in ["q1", "l1", "d2"] {
-        let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
+    for &name in cases(&["q1", "l1", "d2"], 2) {
+        let (experiment, log) = to_and_fro(name);
         let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
         for late in [2, 5, 10] {
-            let published = experiment.published::<f32>(&log, |period, samples| {
+            let published = experiment.published::<f32>(log, |period, samples| {
                 if LATE_PERIODS.contains(&period) {
-                    samples.output = delayed_samples(&experiment, &log, period, late).output;
+                    samples.output = delayed_samples(experiment, log, period, late).output;
                 }
             });
             let of = |period: usize| (f64::from(published[period].gap.value) - log[period].gap).abs() / gap;
@@ -49,10 +70,10 @@ fn late_output_readings_locate_the_gap() {
 /// Output readings thirty periods old count as lost.
 #[test]
 fn old_output_readings_count_as_lost() {
-    let (experiment, log) = to_and_fro("q1", TestMotion::Sine(0.5, 1.0));
-    let published = experiment.published::<f32>(&log, |period, samples| {
+    let (experiment, log) = to_and_fro("q1");
+    let published = experiment.published::<f32>(log, |period, samples| {
         if LATE_PERIODS.contains(&period) {
-            samples.output = delayed_samples(&experiment, &log, period, 30).output;
+            samples.output = delayed_samples(experiment, log, period, 30).output;
         }
     });
     assert_eq!(published[LATE_PERIODS.start + 150].source, Source::MotorOnly(OutputFault::Silent));
@@ -63,11 +84,11 @@ fn old_output_readings_count_as_lost() {
 /// Late motor readings keep the speed bounded and the gap invalid.
 #[test]
 fn late_motor_readings_are_invalid() {
-    for (name, late) in [("q1", 3), ("l1", 3), ("s1", 3), ("l1", 10), ("l1", 30)] {
-        let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
-        let published = experiment.published::<f32>(&log, |period, samples| {
+    for &(name, late) in cases(&[("q1", 3), ("l1", 10), ("l1", 3), ("l1", 30), ("s1", 3)], 2) {
+        let (experiment, log) = to_and_fro(name);
+        let published = experiment.published::<f32>(log, |period, samples| {
             if LATE_PERIODS.contains(&period) {
-                samples.motor = delayed_samples(&experiment, &log, period, late).motor;
+                samples.motor = delayed_samples(experiment, log, period, late).motor;
             }
         });
         assert!(LATE_PERIODS.clone().all(|period| !published[period].gap.valid && !published[period].contact_valid));
@@ -93,15 +114,15 @@ fn late_motor_readings_are_invalid() {
 /// Lost motor readings cost little accuracy and validity.
 #[test]
 fn lost_motor_readings_cost_little() {
-    for name in ["q1", "l1", "d2"] {
-        let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
+    for &name in cases(&["q1", "l1", "d2"], 2) {
+        let (experiment, log) = to_and_fro(name);
         let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
         // Every ninth reading, and two in every seventy.
         let lost = |period: usize| LATE_PERIODS.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
-        let published = experiment.published::<f32>(&log, |period, samples| {
+        let published = experiment.published::<f32>(log, |period, samples| {
             if lost(period) {
                 let before = (0..period).rev().find(|before| !lost(*before)).unwrap_or(0);
-                samples.motor = delayed_samples(&experiment, &log, period, period - before).motor;
+                samples.motor = delayed_samples(experiment, log, period, period - before).motor;
             }
         });
         let of = |period: usize| (f64::from(published[period].gap.value) - log[period].gap).abs() / gap;
@@ -117,7 +138,7 @@ fn lost_motor_readings_cost_little() {
 /// A recovered output encoder is readmitted although the teeth are hardly loaded.
 #[test]
 fn recovered_output_is_readmitted_unloaded() {
-    let (experiment, mut log) = to_and_fro("l1", TestMotion::Sine(0.2, 1.0));
+    let (experiment, mut log) = swung("l1", 0.2);
     let counts = log[13_000].output_counts;
     log[13_000..20_000].iter_mut().for_each(|moment| moment.output_counts = counts);
     let published = experiment.published::<f32>(&log, |_, _| {});

@@ -1,6 +1,7 @@
 //! Parameter estimation under difficulties: wearing teeth, forces within the torque bias, a transmission error larger than the gap. Errors
 //! of ordinary joints are in `gap`.
 
+use host_tests::extent::cases;
 use host_tests::tolerance::observer::*;
 use model_core::gears::Kinematics;
 use model_core::observer::{MAPPED, Source};
@@ -16,7 +17,7 @@ use crate::replay::ObserverErrors;
 /// The width of worn teeth is estimated anew, and the output encoder is kept.
 #[test]
 fn wear_is_learnt_and_encoder_kept() {
-    for (seed, worn) in [(31, 46e-6), (32, 60e-6), (33, 80e-6)] {
+    for &(seed, worn) in cases(&[(31, 46e-6), (32, 60e-6), (33, 80e-6)], 1) {
         let mut experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), seed).lasting(4.5);
         let kind = FaultKind::Other(HostOnlyFault::GrownBacklash(worn));
         experiment.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
@@ -37,7 +38,7 @@ fn wear_is_learnt_and_encoder_kept() {
 #[test]
 fn brief_contact_reveals_the_width() {
     // At the start the teeth cross, rest on the opposite flank with a few newtons and return; the link reverses a second later.
-    for (half_backlash, seed) in [(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)] {
+    for &(half_backlash, seed) in cases(&[(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)], 1) {
         let experiment = Experiment::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
         let figures = experiment.figures(&experiment.record(), 2.0);
         println!("{half_backlash}: {figures:?}");
@@ -93,9 +94,8 @@ fn flanks_are_detected_below_the_bias() {
 fn link_travel_reveals_the_width() {
     // The force that holds the teeth on their flanks is far below the torque bias, and the transmission error of S1 exceeds the distance
     // from the middle of the gap to a flank.
-    for (name, half_backlash, frequency, seed) in
-        [("l1", 60e-6, 0.4, 40), ("l1", 40e-6, 0.7, 42), ("s1", 20e-6, 0.7, 43), ("s1", 20e-6, 0.7, 44)]
-    {
+    let light = [("l1", 60e-6, 0.4, 40), ("s1", 20e-6, 0.7, 43), ("l1", 40e-6, 0.7, 42), ("s1", 20e-6, 0.7, 44)];
+    for &(name, half_backlash, frequency, seed) in cases(&light, 2) {
         let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, Some(half_backlash), seed).lasting(5.0);
         experiment.setup.motion = TestMotion::Sine(0.5, frequency).motion(experiment.setup.seed);
         let figures = errors_with_wide_bias(experiment, 3.5);
@@ -117,7 +117,9 @@ fn hidden_gap_has_no_valid_contact() {
 /// Cogging is estimated while the link turns slowly, and left alone otherwise.
 #[test]
 fn cogging_is_learnt_in_slow_motion() {
-    for (name, amplitude, periods, seed) in [("q1", 0.02, 84, 71), ("q1", 0.03, 60, 72), ("q1", 0.0, 84, 73)] {
+    for &(name, amplitude, periods, seed) in
+        cases(&[("q1", 0.03, 60, 72), ("q1", 0.02, 84, 71), ("q1", 0.0, 84, 73)], 1)
+    {
         let mut experiment = Experiment::new(name, "slow", Encoders::Preset, Some(40e-6), seed).lasting(5.0);
         let around = &mut experiment.setup.train.surroundings;
         (around.cogging_torque, around.cogging_periods_per_turn) = (amplitude, periods);
@@ -129,7 +131,7 @@ fn cogging_is_learnt_in_slow_motion() {
         println!("{name}: cogging of {amplitude} N m is taken for {sine} and {cosine} at the link");
         COGGING.check(astray / at_link(0.02));
     }
-    for motion in ["hold", "inertia"] {
+    for &motion in cases(&["inertia", "hold"], 1) {
         let experiment = Experiment::new("q1", motion, Encoders::Preset, Some(40e-6), 74).lasting(4.0);
         let published = experiment.published::<f32>(&experiment.record(), |_, _| {});
         let [sine, cosine] = published.last().expect("it lasts").cogging.map(f64::from);

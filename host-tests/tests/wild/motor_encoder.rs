@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use host_tests::extent::short_or_long;
 use model_core::compensation::{Command, Motion, Position};
 use model_core::observer::{MAPPED, MotorFault, Observer, Source};
 
@@ -246,7 +247,8 @@ fn small_motor_jump_is_reported() {
 fn motor_freeze_at_speed_is_detected() {
     for name in ["q1", "l1", "d2"] {
         let subject = Subject::preset(name);
-        let fast = (0..48).map(|seed| (seed, run_fault(&subject, Fault::Frozen, Some(1.2), seed, name)));
+        let fast =
+            (0..short_or_long(8, 48)).map(|seed| (seed, run_fault(&subject, Fault::Frozen, Some(1.2), seed, name)));
         let fast: Vec<_> = fast.filter(|(_, outcome)| outcome.part_of_speed > 0.5).collect();
         assert!(fast.len() >= 3, "{name}: {} courses begin at speed", fast.len());
         for (seed, Outcome { reported_after, .. }) in fast {
@@ -309,7 +311,9 @@ fn half_second_fault_keeps_the_inertia() {
     const COMPARED_TIME: f64 = 3.0;
     for name in PRESETS {
         let subject = Subject::preset(name);
-        for (seed, fault) in (0..8).map(|seed| (seed, if seed % 2 == 0 { Fault::Frozen } else { Fault::Random })) {
+        for (seed, fault) in
+            (0..short_or_long(2, 8)).map(|seed| (seed, if seed % 2 == 0 { Fault::Frozen } else { Fault::Random }))
+        {
             let mut random = RandomValues::new(seed, "half a second");
             let (mut joint, mut controller) = (subject.joint(), subject.controller());
             let begins = subject.periods(FAULT_START) + (random.below(u64::from(subject.periods(1.0)))) as u32;

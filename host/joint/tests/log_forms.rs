@@ -7,13 +7,13 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use command::{Ended, folder, joint, json, text};
+use command::{Ended, SHORT_ROWS, folder, joint, json, text, write_short_log};
 use serde_json::Value;
 
 /// Simulated log of Q1: time, counts of motor and output, torque. Counts continue over turns.
 fn rows(folder: &Path) -> Vec<[f64; 4]> {
     let path = folder.join("plain.csv");
-    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).succeeded();
+    write_short_log(&path, SHORT_ROWS);
     let log = fs::read_to_string(&path).expect("written");
     let row = |line: &str| {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
@@ -135,7 +135,7 @@ fn repeated_time_stamps_resolved_or_rejected() {
     log("", &|_| String::new());
     identify(folder, &[]).refused(&[
         "the time does not rise in line",
-        "of 128900 rows have the time of the row before, with other values",
+        "of 54000 rows have the time of the row before, with other values",
         "--column period=NAME",
     ]);
     log(",cycle", &|row| format!(",{}", row % 65536));

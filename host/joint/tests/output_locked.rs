@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use command::{Ended, folder, joint, json, text};
+use host_tests::extent::cases;
 use scenario::plant::{PlantName, plant};
 use scenario::surroundings::train;
 use serde_json::Value;
@@ -66,13 +67,13 @@ type Case<'a> = (&'a [(&'a str, &'a str)], [f64; 3], u64, usize);
 fn locked_output_intervals_contain_truth() {
     let folder = folder();
     let folder = folder.path();
-    let cases: [Case<'_>; 4] = [
+    let joints: [Case<'_>; 4] = [
         (&[], [40.0, 10.3e3, 0.03], 1, 1),
         (&[], [40.0, 10.3e3, 0.03], 2, 10),
         (&[("half_backlash_um", "25"), ("stiffness_N_m_per_rad", "8000")], [25.0, 8000.0, 0.03], 3, 1),
         (&[("half_backlash_um", "60"), ("motor_coulomb_friction_N_m", "0.06")], [60.0, 10.3e3, 0.06], 4, 5),
     ];
-    for (changes, truths, seed, every) in cases {
+    for &(changes, truths, seed, every) in cases(&joints, 2) {
         write(folder, &record("q1", changes, seed, 2.0, every));
         identify(folder, "q1", &[]).succeeded();
         let record = json(&folder.join("out/findings.json"));

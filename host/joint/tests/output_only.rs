@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use command::{Ended, folder, joint, json, text};
+use host_tests::extent::cases;
 use serde_json::Value;
 
 const INERTIA: &str = "inertia of motor and link at the output";
@@ -52,7 +53,7 @@ type Case<'a> = (&'a str, &'a str, &'a str, usize, &'a [&'a str], &'a [(&'a str,
 fn output_only_intervals_contain_truth() {
     let folder = folder();
     let folder = folder.path();
-    let cases: [Case<'_>; 5] = [
+    let joints: [Case<'_>; 5] = [
         (
             "q1",
             "14",
@@ -79,7 +80,7 @@ fn output_only_intervals_contain_truth() {
         // Like a hobby servo: 250:1, most of the inertia in the rotor, 1000 samples a second of 12 bits.
         ("c1", "12", "5", 10, SERVO, &[(INERTIA, 0.05125), (DRY, 0.14), (WEIGHT, 0.3), (VISCOUS, 0.02125)]),
     ];
-    for (name, bits, seed, every, changes, truths) in cases {
+    for &(name, bits, seed, every, changes, truths) in cases(&joints, 2) {
         let sets: Vec<&str> = changes.iter().flat_map(|change| ["--set", *change]).collect();
         let common = ["--joint", name, "--output-bits", bits];
         record(folder, &[&common[..], &["--seed", seed], &sets].concat(), every, 1.0);

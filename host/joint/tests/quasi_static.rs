@@ -9,6 +9,7 @@ use std::fs;
 use std::path::Path;
 
 use command::{Ended, folder, joint, json, text};
+use host_tests::extent::short_or_long;
 use scenario::random::RandomStream;
 use serde_json::Value;
 
@@ -206,7 +207,7 @@ fn measured_format_read_by_one_command() {
 #[test]
 fn intervals_cover_truth_in_95_percent() {
     let (mut inside, mut all) = (0, 0);
-    for seed in 100..140 {
+    for seed in 100..short_or_long(110, 140) {
         // Every other log has the course of the measured joint: three sweeps in each half, two of them over the same
         // positions.
         let sweeps = match seed % 2 {

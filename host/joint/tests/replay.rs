@@ -10,7 +10,7 @@ use mcap::{MessageStream, Writer};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use command::{joint, json, text};
+use command::{SHORT_ROWS, joint, json, text, write_short_log};
 
 /// Topic of the controller, and the offset of the motor counts: after the CDR header, time, period and clock.
 const CONTROLLER: &str = "/joint/controller";
@@ -144,7 +144,7 @@ fn log_without_counts_rejected() {
 fn any_log_feeds_observer() {
     let folder = TempDir::new().expect("a folder");
     let (log, out) = (folder.path().join("log.csv"), folder.path().join("out"));
-    joint(&["identify", text(&log), "--simulate"]).succeeded();
+    write_short_log(&log, SHORT_ROWS);
     let guess = ["--set", "half_backlash_um=60"];
     joint(&[&["replay", text(&log), "q1", "--out", text(&out)][..], &guess].concat()).succeeded();
     let record = json(&out.join("record.json"));

@@ -176,7 +176,7 @@ mod tests {
     use super::first_rise;
 
     #[test]
-    fn a_parabola_s_way_through_zero_is_found_wherever_it_bends() {
+    fn zero_of_parabola_is_found() {
         for (start, rise, curve, error) in [(-1.0, 2.0, 0.0, 1e-15), (-0.3, 1.0, 0.2, 1e-7), (-0.7, 1.0, -0.4, 1e-5)] {
             let share: f64 = first_rise(start, rise, curve);
             let left = start + rise * share + curve * share * (share - 1.0);

@@ -111,6 +111,24 @@ pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
+/// Rows of a simulated log of Q1 that hold the quick reversals, identified in a sixth of the time of the whole log.
+pub const QUICK_ROWS: usize = 38_000;
+/// Rows of a simulated log of Q1 that hold the quick reversals and the first slow one: they show every parameter and are
+/// identified in a third of the time of the whole log.
+pub const SHORT_ROWS: usize = 54_000;
+
+/// Writes the first rows of a simulated log of Q1.
+pub fn write_short_log(path: &Path, rows: usize) {
+    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+    let whole = identify::virtual_test::record(&q1, 1, &|_| {}).expect("can be followed").csv(false);
+    std::fs::write(path, first_rows(&whole, rows)).expect("room");
+}
+
+/// Header and first rows of a log.
+pub fn first_rows(log: &str, rows: usize) -> String {
+    log.lines().take(1 + rows).map(|line| format!("{line}\n")).collect()
+}
+
 /// Reads a JSON file.
 pub fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("it was written")).expect("JSON, all of it")

@@ -4,12 +4,16 @@
 use std::fs;
 use std::path::Path;
 
+use host_tests::extent::short_or_long;
+
 use crate::command::{Ended, folder, joint_on_a_full_disk_with, text};
 use crate::tree::{Tree, WRITTEN_LIST, assert_same, is_equal, results, tree};
 use crate::writers::{Writer, empty_folder};
 
 /// Limits on the size of a file [KiB]; the last one has room for every file.
 const LIMITS: [u32; 8] = [0, 1, 2, 4, 16, 64, 256, 1 << 16];
+/// Limits of the short form: no room, room for a part of a file, room for every file [KiB].
+const SHORT_LIMITS: [u32; 3] = [0, 16, 1 << 16];
 /// Limits for slow commands [KiB].
 const SLOW_LIMITS: [u32; 1] = [64];
 
@@ -60,7 +64,7 @@ fn check_full_disk(writer: Writer) {
     };
     for &older in states {
         let mut refusals = 0;
-        for limit in if slow { &SLOW_LIMITS[..] } else { &LIMITS } {
+        for limit in if slow { &SLOW_LIMITS[..] } else { short_or_long(&SHORT_LIMITS[..], &LIMITS) } {
             let out = if older { out.clone() } else { empty_folder(place.path()) };
             let when = format!("{writer:?}, {limit} KiB, older run: {older}");
             let second = folder();

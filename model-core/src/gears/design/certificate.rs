@@ -83,8 +83,9 @@ mod tests {
         [-0.5, 0.5].iter().all(|side| 1.0 - amplitude * libm::cos(side * phase) >= 0.0)
     }
 
+    /// A departure up to the stated depth goes unseen between two checks, a deeper one does not.
     #[test]
-    fn a_departure_slips_between_two_looks_up_to_the_stated_depth_and_not_beyond() {
+    fn departure_up_to_stated_depth_is_unseen() {
         for phase in [0.2, 0.5, 1.0, 2.0, 3.0] {
             let depth = departure(phase).expect("checks are close enough");
             assert!(slips_between(phase, 1.0 + 0.99 * depth), "{phase}");

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_dies_away_below_the_limit_and_grows_above_it() {
+    fn motion_decays_below_limit_grows_above() {
         let limit = largest_phase(0.05, 4);
         let after = |phase: f64| {
             let oscillator = Oscillator { phase, damping_ratio: 0.05 };

@@ -19,13 +19,16 @@ fn recorded(seed: u64, with_output_torque: bool) -> String {
     record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque)
 }
 
+/// More rows than any log has.
+const WHOLE: usize = usize::MAX - 1;
+
 /// Log, its first rows in the short form.
 fn shortened(log: &str) -> String {
     if is_long() { log.to_owned() } else { first_rows(log, SHORT_ROWS) }
 }
 
-/// Findings for the recommended test of a changed joint, identified with the unchanged joint file.
-fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torque: bool) -> Value {
+/// Findings for the recommended test of a changed joint, from its first rows, identified with the unchanged joint file.
+fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torque: bool, rows: usize) -> Value {
     let preset = joint_file::preset(name).expect("a preset");
     let changed = changes
         .iter()
@@ -33,7 +36,8 @@ fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torqu
     let truth = joint_file::read(&changed).expect("still a joint");
     let folder = folder();
     let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
-    fs::write(&log, record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque)).expect("written");
+    let recording = record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque);
+    fs::write(&log, first_rows(&recording, rows)).expect("written");
     joint(&["identify", text(&log), "--joint", name, "--out", text(&out)]).succeeded();
     let patched = fs::read_to_string(out.join("joint.toml")).expect("written");
     joint_file::read(&patched).expect("the patched file is a joint file");
@@ -129,7 +133,7 @@ fn intervals_contain_true_values() {
     let (mut inside, mut all) = (0, 0);
     for (name, changes, truths, seed) in cases {
         println!("{name} {changes:?}, seed {seed}");
-        count(&identified(name, changes, seed, false), &truths, &mut inside, &mut all);
+        count(&identified(name, changes, seed, false, WHOLE), &truths, &mut inside, &mut all);
     }
     println!("{inside} of {all} inside");
     assert!(10 * inside >= 9 * all, "{inside} of {all} true values lie in their 95 % intervals");
@@ -217,7 +221,7 @@ fn wrong_inertia_widens_interval_and_is_noted() {
 
 #[test]
 fn output_torque_separates_frictions() {
-    let record = identified("q1", &[], 21, true);
+    let record = identified("q1", &[], 21, true, short_or_long(SHORT_ROWS, WHOLE));
     let viscous = "drive_train.motor_viscous_friction_N_m_s_per_rad";
     for (key, truth, share) in [(viscous, 2e-4, 0.1), (LINK_DRY, 0.3, 0.03), (LINK_VISCOUS, 0.1, 0.03)] {
         let (value, _) = found(&record, key).unwrap_or_else(|| panic!("{key} is not found"));
@@ -803,32 +807,39 @@ fn contradictory_log_rejected_with_cause() {
 /// Rows of a log.
 type Rows = Vec<[f64; 4]>;
 
-/// An error of a log as a whole: name, change of the rows, and the words that the message must contain.
-type WrongRows = (&'static str, fn(&Rows) -> Rows, &'static [&'static str]);
+/// An error of a log as a whole: name, rows that show it, change of the rows, and the words that the message must contain.
+type WrongRows = (&'static str, usize, fn(&Rows) -> Rows, &'static [&'static str]);
+
+/// Rows with three of the four slow reversals, which tell friction and a scale of one direction from a constant torque.
+const THREE_SLOW_ROWS: usize = 100_000;
 
 const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
     (
         "a torque that is clipped",
+        THREE_SLOW_ROWS,
         |rows| each(rows, |row| row[3] = row[3].clamp(-1.2, 1.2)),
         &["the torque of this log is", "a current"],
     ),
     (
         "a torque that is scaled one way",
+        THREE_SLOW_ROWS,
         |rows| each(rows, |row| row[3] *= if row[3] > 0.0 { 1.4 } else { 1.0 }),
         &["the torque of this log is", "a current"],
     ),
-    ("a torque with an offset", |rows| each(rows, |row| row[3] += 0.6), &["a constant torque of", "zero"]),
+    ("a torque with an offset", SHORT_ROWS, |rows| each(rows, |row| row[3] += 0.6), &["a constant torque of", "zero"]),
     (
         "a torque backwards in time",
+        THREE_SLOW_ROWS,
         |rows| backwards(rows),
         &["friction of the motor is negative", "time runs backwards"],
     ),
     (
         "an output that has slipped",
+        SHORT_ROWS,
         |rows| slipped(rows, 100.0),
         &["offset between motor and output changes", "slipped"],
     ),
-    ("an output that is late", |rows| late(rows, 20), &["the output's readings are 2.0", "older", "shift"]),
+    ("an output that is late", SHORT_ROWS, |rows| late(rows, 20), &["the output's readings are 2.0", "older", "shift"]),
 ];
 
 fn each(rows: &Rows, change: impl FnMut(&mut [f64; 4])) -> Rows {
@@ -858,18 +869,17 @@ fn late(rows: &Rows, samples: usize) -> Rows {
 #[test]
 fn log_wrong_as_a_whole_rejected() {
     let folder = folder();
-    // Three of the four slow reversals are needed to tell a scale of one direction from a constant torque.
-    let rows = &SIMULATED[..short_or_long(100_000, SIMULATED.len())].to_vec();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
-    for (what, change, named) in WRONG_AS_A_WHOLE {
+    for (what, rows, change, named) in WRONG_AS_A_WHOLE {
         println!("{what}");
-        write_rows(&path, &change(rows), false);
+        let rows = SIMULATED[..short_or_long(rows, SIMULATED.len())].to_vec();
+        write_rows(&path, &change(&rows), false);
         joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(named);
         assert!(!out.exists(), "{what}: nothing is written");
     }
     // Output torque computed from the motor's torque.
     let lines: String =
-        rows.iter().map(|[t, m, o, torque]| format!("{t},{m},{o},{torque},{}\n", 6.0 * torque)).collect();
+        simulated_rows().iter().map(|[t, m, o, torque]| format!("{t},{m},{o},{torque},{}\n", 6.0 * torque)).collect();
     fs::write(&path, format!("time_s,motor_counts,output_counts,motor_torque_N_m,output_torque_N_m\n{lines}"))
         .expect("written");
     joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["was not measured there"]);

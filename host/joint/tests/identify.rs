@@ -509,7 +509,7 @@ fn mcap_log_equals_csv_log() {
 fn history_of_sim_can_be_identified() {
     let folder = folder();
     let out = folder.path().join("sim");
-    joint(&["sim", "q1", "--profile", "reversals", "--out", text(&out)]).succeeded();
+    joint(&["sim", "q1", "--profile", "reversals", "--no-energy", "--out", text(&out)]).succeeded();
     let ended =
         joint(&["identify", text(&out.join("history.mcap")), "--out", text(&folder.path().join("out"))]).succeeded();
     assert!(ended.out.contains("stiffness behind the carrier"), "{ended:?}");

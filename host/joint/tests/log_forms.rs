@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use command::{Ended, SHORT_ROWS, folder, joint, json, text, write_short_log};
+use host_tests::extent::cases;
 use serde_json::Value;
 
 /// Simulated log of Q1: time, counts of motor and output, torque. Counts continue over turns.
@@ -75,7 +76,8 @@ fn register_counts_are_unwrapped() {
         let (counts, least) = (f64::from(bits).exp2(), if signed { -f64::from(bits - 1).exp2() } else { 0.0 });
         (value - least).rem_euclid(counts) + least
     };
-    for (motor, output) in [((14, true), (17, true)), ((16, false), (18, false)), ((16, true), (17, false))] {
+    let registers = [((14, true), (17, true)), ((16, false), (18, false)), ((16, true), (17, false))];
+    for &(motor, output) in cases(&registers, 2) {
         let read =
             |row: &[f64; 4]| [row[0], register(row[1], motor.0, motor.1), register(row[2], output.0, output.1), row[3]];
         write(folder, &plain.iter().map(read).collect::<Vec<_>>());

@@ -948,8 +948,11 @@ fn contradicting_output_torque_rejected() {
         joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(words);
         assert!(!out.exists(), "{what}: nothing is written");
     };
-    refused("another time step", &["inertias of motor and link are 1.2", "samples are 1."], &|row| row[0] *= 1.1);
-    refused("another scale", &["inertias of motor and link are 1.29", "in another unit"], &|row| row[4] *= 1.3);
+    // The true factors are 1.1 and 1.3; the shorter log shows them to a thousandth as well, with other last digits.
+    let (step, scale) = short_or_long(("1.099", "1.298 and 1.300"), ("1.1", "1.299"));
+    let [step, scale] = [format!("samples are {step}"), format!("inertias of motor and link are {scale}")];
+    refused("another time step", &["inertias of motor and link are 1.2", &step], &|row| row[0] *= 1.1);
+    refused("another scale", &[&scale, "in another unit"], &|row| row[4] *= 1.3);
     refused("the other sign", &["the torque at the output is -1.0", "other sign"], &|row| row[4] = -row[4]);
     refused("a clipped drive", &["is not in proportion", "clipped"], &|row| {
         row[3] = row[3].clamp(-0.8 * most, 0.8 * most)

@@ -10,10 +10,7 @@
 /// assert_eq!(from_range(65_535, -12.5, 12.5, 16), 12.5);
 /// ```
 pub fn to_range(value: f32, low: f32, high: f32, bits: u32) -> u32 {
-    let most = most(bits);
-    let value = if value.is_nan() { 0.0 } else { value };
-    let share = (value.max(low).min(high) - low) / (high - low);
-    (share * most as f32 + 0.5) as u32 & most
+    rounded_down(value, low, high, bits, 0.5)
 }
 
 /// Value of a field of `bits` bits between `low` and `high`.
@@ -31,10 +28,15 @@ pub fn from_range(field: u32, low: f32, high: f32, bits: u32) -> f32 {
 /// assert_eq!(to_range_down(99.0, -12.5, 12.5, 16), 65_535);
 /// ```
 pub fn to_range_down(value: f32, low: f32, high: f32, bits: u32) -> u32 {
+    rounded_down(value, low, high, bits, 1.0 / 64.0)
+}
+
+/// Field between `low` and `high`, increased by `more` and rounded down.
+fn rounded_down(value: f32, low: f32, high: f32, bits: u32, more: f32) -> u32 {
     let most = most(bits);
     let value = if value.is_nan() { 0.0 } else { value };
-    let share = (value.max(low).min(high) - low) / (high - low);
-    (share * most as f32 + 1.0 / 64.0) as u32 & most
+    let share = (value.max(low).min(high) - low) / (high - low).max(f32::MIN_POSITIVE);
+    (share * most as f32 + more) as u32 & most
 }
 
 fn most(bits: u32) -> u32 {

@@ -76,7 +76,7 @@ impl Server {
     }
 
     fn rated_current(&self, drive: &Drive) -> f32 {
-        self.rated_torque(drive) / drive.settings().torque_constant.max(f32::MIN_POSITIVE)
+        drive.settings().current(self.rated_torque(drive))
     }
 
     /// Value of a number; `None` if there is none at present.

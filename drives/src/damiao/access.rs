@@ -10,11 +10,6 @@ use crate::scale;
 /// Unit of the register TIMEOUT [s].
 pub const TIMEOUT_UNIT: f32 = 50e-6;
 
-/// Largest current of the motor [A].
-fn max_current(settings: &Settings) -> f32 {
-    settings.torque_limit / settings.torque_constant.max(f32::MIN_POSITIVE)
-}
-
 /// Factor from the speed loop's registers, shares of the largest current at the rotor's speed, to gains at the output.
 fn velocity_unit(settings: &Settings) -> f32 {
     let ratio = settings.ratio.to_f32();
@@ -51,7 +46,7 @@ impl Server {
             Register::UnderVoltage => settings.min_voltage,
             Register::OverVoltage => settings.max_voltage,
             Register::OverTemperature => settings.max_temperature,
-            Register::OverCurrent => (settings.max_current / max_current(settings).max(f32::MIN_POSITIVE)).min(1.0),
+            Register::OverCurrent => (settings.max_current / settings.peak_current().max(f32::MIN_POSITIVE)).min(1.0),
             Register::Acceleration => kept.acceleration,
             Register::Deceleration => kept.deceleration,
             Register::MaxSpeed => settings.max_velocity.min(f32::MAX),
@@ -65,7 +60,7 @@ impl Server {
             Register::VelocityIntegral => settings.gains.velocity_integral / velocity_unit(settings),
             Register::PositionGain => settings.gains.position,
             Register::CorrectionOne | Register::CorrectionTwo | Register::Direction => 1.0,
-            Register::MaxCurrent => max_current(settings),
+            Register::MaxCurrent => settings.peak_current(),
             Register::BusVoltage => now.sensors.bus_voltage,
             Register::BoardTemperature => now.sensors.board_temperature,
             Register::MotorTemperature => now.sensors.motor_temperature,
@@ -111,7 +106,7 @@ impl Server {
                 settings.max_temperature = value;
                 settings.derating_temperature = value;
             }
-            Register::OverCurrent => settings.max_current = value * max_current(settings),
+            Register::OverCurrent => settings.max_current = value * settings.peak_current(),
             Register::Acceleration => kept.acceleration = value,
             Register::Deceleration => kept.deceleration = value,
             Register::MaxSpeed => settings.max_velocity = value,

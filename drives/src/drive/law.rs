@@ -24,7 +24,7 @@ pub(super) struct Integrals {
 /// Torque at the output for a set-point [N m].
 pub(super) fn torque(settings: &Settings, set_point: &SetPoint, now: &Feedback, integrals: &mut Integrals) -> f32 {
     match set_point {
-        SetPoint::Brake => -settings.short_circuit_damping() * now.velocity,
+        SetPoint::Brake => settings.short_circuit_torque(now.velocity),
         SetPoint::Torque { torque, max_velocity } => limited_torque(settings, *torque, *max_velocity, now),
         SetPoint::Velocity { velocity, torque, max_torque, .. } => {
             velocity_loop(settings, *velocity, *max_torque, 1.0, now, integrals) + torque

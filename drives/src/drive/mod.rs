@@ -280,8 +280,7 @@ impl Drive {
     /// Begins the calibration of motor and encoders, if the drive is disabled and has no fault.
     pub fn calibrate(&mut self) {
         if self.state == State::Disabled && self.fault.is_none() {
-            let periods = self.settings.calibration_time / self.settings.period;
-            self.state = State::Calibrating(periods as u32);
+            self.state = State::Calibrating(self.settings.calibration_periods());
         }
     }
 
@@ -332,7 +331,9 @@ impl Drive {
             self.expire();
         }
         let torque = match self.state {
-            State::Disabled if self.settings.brakes_while_disabled => self.short_circuit_torque(),
+            State::Disabled if self.settings.brakes_while_disabled => {
+                self.settings.short_circuit_torque(self.feedback.velocity)
+            }
             State::Disabled => 0.0,
             State::Calibrating(rest) => {
                 self.calibrated |= rest == 0;
@@ -355,11 +356,6 @@ impl Drive {
         self.feedback.demand = finite;
         self.feedback.is_limited = limited != finite;
         limited / ratio
-    }
-
-    /// Torque of the shorted winding at the output [N m].
-    fn short_circuit_torque(&self) -> f32 {
-        -self.settings.short_circuit_damping() * self.feedback.velocity
     }
 
     /// Torque of the enabled drive at the output [N m].
@@ -395,7 +391,7 @@ impl Drive {
         feedback.position = geared.plus(self.offset.unwrap_or_default());
         feedback.velocity = feedback.motor_velocity / ratio;
         feedback.torque = sensors.motor_torque * ratio;
-        feedback.current = sensors.motor_torque / settings.torque_constant;
+        feedback.current = settings.current(sensors.motor_torque);
         feedback.sensors = *sensors;
     }
 

@@ -56,7 +56,7 @@ impl VirtualPower {
 
     /// Advances by a control period under a torque [N m] at a speed of the rotor [rad/s].
     pub fn step(&mut self, settings: &Settings, torque: f32, velocity: f32) {
-        let current = torque / settings.torque_constant.max(f32::MIN_POSITIVE);
+        let current = settings.current(torque);
         let loss = settings.resistance * current * current;
         let power = torque * velocity + loss;
         // The voltage of the period before avoids a quadratic equation; the supply changes slowly against a period.

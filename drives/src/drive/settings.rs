@@ -76,10 +76,25 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Damping of the shorted winding at the output [N m s/rad]: ratio^2 kt^2 / R.
-    pub fn short_circuit_damping(&self) -> f32 {
+    /// Current of the winding for a torque of the motor [A].
+    pub fn current(&self, torque: f32) -> f32 {
+        torque / self.torque_constant.max(f32::MIN_POSITIVE)
+    }
+
+    /// Current of the winding at the largest torque of the motor [A].
+    pub fn peak_current(&self) -> f32 {
+        self.current(self.torque_limit)
+    }
+
+    /// Torque of the shorted winding at the output [N m], at a speed of the output [rad/s]: -ratio^2 kt^2 / R speed.
+    pub(super) fn short_circuit_torque(&self, velocity: f32) -> f32 {
         let geared = self.ratio.to_f32() * self.torque_constant;
-        geared * geared / self.resistance.max(f32::MIN_POSITIVE)
+        -(geared * geared / self.resistance.max(f32::MIN_POSITIVE)) * velocity
+    }
+
+    /// Time that a calibration takes [control periods].
+    pub fn calibration_periods(&self) -> u32 {
+        (self.calibration_time / self.period.max(f32::MIN_POSITIVE)) as u32
     }
 }
 

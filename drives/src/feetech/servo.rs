@@ -37,7 +37,7 @@ impl Servo {
     /// Servo of the factory, with an identifier and the limits of its drive.
     pub fn new(id: u8, base: Settings) -> Self {
         let mut memory = Memory::new();
-        let stall_current = base.torque_limit / base.torque_constant.max(f32::MIN_POSITIVE);
+        let stall_current = base.peak_current();
         let limits = [
             (table::ID, id.into()),
             (table::MAX_TEMPERATURE, table::MAX_TEMPERATURE.value_of(base.max_temperature)),

@@ -10,6 +10,7 @@ use super::payload::*;
 use super::units::Units;
 use super::{FIRMWARE_VERSION, HARDWARE_VERSION, PROTOCOL_VERSION};
 use crate::drive::{Drive, Sensors};
+use crate::scale;
 use crate::turns::Turns;
 
 /// Readings of an axis.
@@ -38,9 +39,8 @@ impl Readings {
     pub fn of_motor(drive: &Drive) -> Self {
         let (settings, feedback) = (drive.settings(), drive.feedback());
         let units = Units::new(settings.ratio);
-        let limit = settings.torque_limit.max(0.0);
-        let torque = units.to_torque(feedback.demand).min(limit).max(-limit);
-        let setpoint = torque / settings.torque_constant.max(f32::MIN_POSITIVE);
+        let torque = scale::limit(units.to_torque(feedback.demand), settings.torque_limit);
+        let setpoint = settings.current(torque);
         Self {
             position: units.to_position(feedback.position),
             velocity: units.to_velocity(feedback.velocity),

@@ -250,7 +250,7 @@ pub(super) fn read(endpoint: &Endpoint, server: &Server, drive: &Drive) -> Value
         Parameter::Velocity => readings.velocity,
         Parameter::WatchdogTimeout => server.watchdog_timeout(drive),
         Parameter::TorqueConstant => settings.torque_constant,
-        Parameter::CurrentLimit => settings.torque_limit / settings.torque_constant.max(f32::MIN_POSITIVE),
+        Parameter::CurrentLimit => settings.peak_current(),
         Parameter::CurrentSetpoint => readings.currents.setpoint,
         Parameter::CurrentMeasured => readings.currents.measured,
         Parameter::InverterTemperature => readings.sensors.board_temperature,
@@ -300,7 +300,7 @@ pub(super) fn write(endpoint: &Endpoint, value: [u8; 4], server: &mut Server, dr
     let number = u32::from_le_bytes(value);
     let float = f32::from_bits(number);
     let units = Units::new(drive.settings().ratio);
-    let current = drive.settings().torque_limit / drive.settings().torque_constant.max(f32::MIN_POSITIVE);
+    let current = drive.settings().peak_current();
     let speed = units.to_velocity(drive.settings().max_velocity);
     match endpoint.parameter {
         Parameter::RequestedState => server.request_state((number as u8).into(), drive),

@@ -41,7 +41,7 @@ impl Procedure {
     pub fn state(&self, drive: &Drive) -> u8 {
         match drive.state() {
             State::Enabled | State::TimedOut => axis_state::CLOSED_LOOP_CONTROL,
-            State::Calibrating(rest) if self.is_full() && rest > calibration_periods(drive) / 2 => {
+            State::Calibrating(rest) if self.is_full() && rest > drive.settings().calibration_periods() / 2 => {
                 axis_state::MOTOR_CALIBRATION
             }
             State::Calibrating(_) => axis_state::ENCODER_OFFSET_CALIBRATION,
@@ -85,7 +85,7 @@ impl Procedure {
     fn begin(&mut self, state: u8, drive: &mut Drive) {
         self.running = state;
         match state {
-            axis_state::MOTOR_CALIBRATION => self.rest = (calibration_periods(drive) / 2).max(1),
+            axis_state::MOTOR_CALIBRATION => self.rest = (drive.settings().calibration_periods() / 2).max(1),
             axis_state::CLOSED_LOOP_CONTROL => {}
             _ => drive.calibrate(),
         }
@@ -113,8 +113,4 @@ impl Procedure {
             self.running = axis_state::IDLE;
         }
     }
-}
-
-fn calibration_periods(drive: &Drive) -> u32 {
-    (drive.settings().calibration_time / drive.settings().period.max(f32::MIN_POSITIVE)) as u32
 }

@@ -28,7 +28,6 @@ mod target;
 
 use core::f32::consts::TAU;
 
-pub use encoder::Encoder;
 pub use gains::{Gains, Law};
 pub use power::VirtualPower;
 pub use profile::Profile;
@@ -38,6 +37,7 @@ pub use target::{ProfileLimits, SetPoint, Target};
 
 use crate::scale;
 use crate::turns::Turns;
+use encoder::Encoder;
 use law::Integrals;
 use protection::Watchdog;
 

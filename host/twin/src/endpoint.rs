@@ -5,19 +5,17 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::os::fd::AsFd;
-use std::os::unix::fs::{FileTypeExt, OpenOptionsExt, symlink};
-use std::os::unix::net::UnixStream;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 use std::thread;
 
 use report::failure::{Failure, Outcome};
 use rustix::event::{PollFd, PollFlags, poll};
-use rustix::fs::{OFlags, fcntl_setfl};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use crate::event::{ClientId, Event};
+use crate::terminal;
 use crate::wire::{Packet, Received, Wire, WireName, wire};
 
 /// Bytes that wait for a client whose line is full. The line itself holds 4 kB more.
@@ -133,7 +131,7 @@ impl Endpoint {
             return listen(port, events).map(|endpoint| (endpoint, None));
         }
         let (far, near, path) =
-            terminal().map_err(|error| Failure::new(format!("cannot open a pseudo-terminal: {error}")))?;
+            raw_terminal().map_err(|error| Failure::new(format!("cannot open a pseudo-terminal: {error}")))?;
         if let Some(link) = link {
             link_to(&path, link)?;
         }
@@ -154,19 +152,13 @@ impl Drop for Endpoint {
     }
 }
 
-/// Far end, near end and path of a new pseudo-terminal without echo or line editing.
-fn terminal() -> io::Result<(File, File, String)> {
-    let far = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
-    grantpt(&far)?;
-    unlockpt(&far)?;
-    let path = ptsname(&far, Vec::new())?.to_string_lossy().into_owned();
-    fcntl_setfl(&far, OFlags::NONBLOCK)?;
-    let not_ours = OFlags::NOCTTY.bits() as i32;
-    let near = File::options().read(true).write(true).custom_flags(not_ours).open(&path)?;
+/// Pseudo-terminal without echo and line editing, which would change frames.
+fn raw_terminal() -> io::Result<(File, File, String)> {
+    let (far, near, path) = terminal::pair()?;
     let mut attributes = tcgetattr(&near)?;
     attributes.make_raw();
     tcsetattr(&near, OptionalActions::Now, &attributes)?;
-    Ok((File::from(far), near, path))
+    Ok((far, near, path))
 }
 
 /// Makes the symbolic link, in place of one that a run left whose terminal is gone; anything else is kept.
@@ -188,14 +180,6 @@ fn link_to(path: &str, link: &Path) -> Outcome<()> {
     symlink(path, link).map_err(|error| {
         Failure::new(format!("cannot make the link {name}: {error}")).with_help("name a --link in a folder of yours")
     })
-}
-
-/// Removes a socket that an earlier run left: one that nobody answers. Any other file is kept.
-pub fn remove_stale_socket(path: &Path) {
-    let is_socket = fs::symlink_metadata(path).is_ok_and(|found| found.file_type().is_socket());
-    if is_socket && UnixStream::connect(path).is_err() {
-        let _ = fs::remove_file(path);
-    }
 }
 
 fn read_terminal(mut far: File, events: &Sender<Event>) {

@@ -9,12 +9,11 @@ use drives::{Drive, Settings, Turns};
 use joint_file::sheet;
 use model_core::compensation::Compensation;
 use model_core::gears::Kinematics;
-use model_core::observer::{MAPPED, Observer};
+use model_core::observer::{MAPPED, Observer, Samples};
 use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
 use scenario::execution::{RunSpec, setup};
-use scenario::faults::ControllerInputs;
 use scenario::plant::PlantName;
 use scenario::port::Translator;
 use scenario::rig::{Rig, RunError};
@@ -28,8 +27,7 @@ const ENCODER_BANDWIDTH_PERIODS: f32 = 0.2;
 /// Largest crossover of the speed loop with the rotor alone, as in the gap, over the bandwidth of its speed [-]: keeps
 /// 50 degrees of phase.
 const ROTOR_CROSSOVER_RATIO: f32 = 0.25;
-/// Largest bandwidth of the drive's position loop [rad/s]. Makers' defaults for a joint of this size lie between 20
-/// and 60.
+/// Largest bandwidth of the drive's position loop [rad/s]. Assumed: a drive that nobody tuned for the joint.
 const MAX_BANDWIDTH: f64 = 40.0;
 
 /// Joint as it was asked for: its identifier on the bus, and its case.
@@ -86,7 +84,6 @@ pub struct Joint<'d> {
     /// Angle zero of the joint on the scale of the raw output encoder [turns].
     output_zero: f64,
     seed: u64,
-    time: f64,
 }
 
 /// True state of a joint, beside what its drive reports.
@@ -153,7 +150,6 @@ impl Prepared {
             }),
             output_zero: case.zeros.counts(turns.map(u64::cast_signed))[1] as f64 / turns[1] as f64,
             seed: choices.seed,
-            time: 0.0,
         })
     }
 
@@ -200,25 +196,30 @@ impl Joint<'_> {
     /// Runs one control period.
     pub fn step(&mut self) -> Result<(), RunError> {
         let begun = self.rig.begin_period();
-        let mut sensors = self.sensors(&begun.seen);
-        sensors.motor_torque = begun.torques.air_gap as f32;
+        let samples = self.translator.samples(&begun.seen);
+        let is_new = begun.seen.motor.period == begun.seen.period;
+        let mut sensors = Sensors {
+            motor_counts: is_new.then_some(samples.motor.counts),
+            output_counts: samples.output.map(|reading| reading.counts),
+            motor_torque: begun.torques.air_gap as f32,
+            ..Sensors::default()
+        };
         self.power.read(&mut sensors);
-        let torque = self.drive_step(&sensors, &begun.seen);
+        let torque = self.drive_step(&sensors, &samples);
         self.translator.note(torque);
         self.rig.end_period(begun.time, f64::from(torque))?;
         self.rig.check_motion(begun.time)?;
         let motor_speed = self.rig.plant().joint().motor_speed as f32;
         let air_gap = self.rig.plant().torques().air_gap as f32;
         self.power.step(self.drive.settings(), air_gap, motor_speed);
-        self.time = self.rig.plant().joint().time;
         Ok(())
     }
 
     /// Torque of the motor for this period [N m].
-    fn drive_step(&mut self, sensors: &Sensors, seen: &ControllerInputs) -> f32 {
-        let Self { drive, compensated, translator, .. } = self;
+    fn drive_step(&mut self, sensors: &Sensors, samples: &Samples) -> f32 {
+        let Self { drive, compensated, .. } = self;
         let Some(Compensated { observer, compensation }) = compensated else { return drive.step(sensors, None) };
-        let estimates = *observer.step(&translator.samples(seen));
+        let estimates = *observer.step(samples);
         if drive.set_point().is_none() {
             compensation.restart();
         }
@@ -230,20 +231,9 @@ impl Joint<'_> {
         drive.step(sensors, Some(&mut follow))
     }
 
-    /// Readings that are new in this period.
-    fn sensors(&mut self, seen: &ControllerInputs) -> Sensors {
-        let samples = self.translator.samples(seen);
-        let is_new = seen.motor.period == seen.period;
-        Sensors {
-            motor_counts: is_new.then_some(samples.motor.counts),
-            output_counts: samples.output.map(|reading| reading.counts),
-            ..Sensors::default()
-        }
-    }
-
     /// Time of the joint [s].
     pub fn time(&self) -> f64 {
-        self.time
+        self.rig.plant().joint().time
     }
 
     /// Control period [s].

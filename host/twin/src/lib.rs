@@ -17,6 +17,7 @@ mod mapping;
 mod protocol;
 mod session;
 mod summary;
+pub mod terminal;
 mod wire;
 
 pub use arguments::Arguments;

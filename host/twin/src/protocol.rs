@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use drives::bus::{CanServer, SerialServer};
+use drives::cybergear::Model;
 use drives::{Settings, cia402, cybergear, damiao, feetech, moteus, odrive};
 
 use crate::wire::WireName;
@@ -29,6 +30,9 @@ pub enum DriveName {
 
 /// Identifier of the answers of Damiao drives, beside the drive's own in the low bits: as most clients have it.
 const DAMIAO_FEEDBACK: u16 = 0x10;
+
+/// RobStride models that a joint may get.
+const ROBSTRIDES: [Model; 4] = [Model::RobStride00, Model::RobStride02, Model::RobStride03, Model::RobStride04];
 
 /// Server of a drive on its kind of bus.
 pub enum Server {
@@ -62,7 +66,8 @@ impl DriveName {
         }
     }
 
-    /// Largest current of the motor [A], as the makers state it for their middle sizes.
+    /// Largest current of the motor [A]: of the data sheets of CyberGear and RobStride 02, and the current that an
+    /// STS3215 draws when it stands still; the others are assumed.
     pub fn peak_current(self) -> f32 {
         match self {
             Self::Feetech => 2.7,
@@ -93,7 +98,7 @@ impl DriveName {
             Self::Moteus => moteus::settings(settings),
             Self::Odrive | Self::Odrive3 => odrive::settings(settings),
             Self::Damiao => damiao::settings(settings),
-            Self::Cybergear => cybergear::settings(cybergear::Model::CyberGear, settings),
+            Self::Cybergear => cybergear::settings(Model::CyberGear, settings),
             Self::Robstride => cybergear::settings(robstride_model(&settings), settings),
             Self::Feetech => feetech::settings(settings),
             Self::Cia402 => cia402::settings(settings),
@@ -119,7 +124,7 @@ impl DriveName {
                 let ranges = damiao_type(settings).1;
                 Server::Can(Box::new(damiao::Server::new(id.into(), DAMIAO_FEEDBACK | u16::from(id), ranges)))
             }
-            Self::Cybergear => Server::Can(Box::new(cybergear::Server::new(id, cybergear::Model::CyberGear))),
+            Self::Cybergear => Server::Can(Box::new(cybergear::Server::new(id, Model::CyberGear))),
             Self::Robstride => Server::Can(Box::new(cybergear::Server::new(id, robstride_model(settings)))),
             Self::Feetech => Server::Serial(Box::new(feetech::Server::new(id, settings))),
             Self::Cia402 => Server::Can(Box::new(cia402::Server::new(id))),
@@ -155,22 +160,22 @@ fn peak_torque(settings: &Settings) -> f32 {
     settings.torque_limit * settings.ratio.to_f32()
 }
 
-/// Damiao type with the smallest torque range that the joint fits into; else the largest.
+/// Damiao type with the smallest torque range that the joint fits into; else the one with the largest.
 fn damiao_type(settings: &Settings) -> (&'static str, damiao::mit::Ranges) {
-    let fits = damiao::MOTOR_TYPES.into_iter().filter(|(_, ranges)| ranges.torque >= peak_torque(settings));
-    let smallest = fits.min_by(|a, b| a.1.torque.total_cmp(&b.1.torque));
-    smallest.unwrap_or(damiao::MOTOR_TYPES[8])
+    smallest_that_fits(damiao::MOTOR_TYPES[0], &damiao::MOTOR_TYPES, |(_, ranges)| ranges.torque, settings)
 }
 
-/// RobStride model with the smallest torque range that the joint fits into; else the largest.
-fn robstride_model(settings: &Settings) -> cybergear::Model {
-    use cybergear::Model;
-    let models = [
-        (Model::RobStride00, 14.0),
-        (Model::RobStride02, 17.0),
-        (Model::RobStride03, 60.0),
-        (Model::RobStride04, 120.0),
-    ];
-    let fits = models.into_iter().find(|(_, torque)| *torque >= peak_torque(settings));
-    fits.map_or(Model::RobStride04, |(model, _)| model)
+/// RobStride model with the smallest torque range that the joint fits into; else the one with the largest.
+fn robstride_model(settings: &Settings) -> Model {
+    smallest_that_fits(ROBSTRIDES[0], &ROBSTRIDES, |model| model.sheet().torque.high, settings)
+}
+
+/// Model whose torque range is the smallest that holds the joint's; else the one with the largest range.
+fn smallest_that_fits<M: Copy>(first: M, models: &[M], torque: fn(&M) -> f32, settings: &Settings) -> M {
+    let needed = peak_torque(settings);
+    models.iter().copied().fold(first, |best, model| {
+        let (range, best_range) = (torque(&model), torque(&best));
+        let is_better = if best_range < needed { range > best_range } else { range >= needed && range < best_range };
+        if is_better { model } else { best }
+    })
 }

@@ -255,13 +255,11 @@ impl Session<'_> {
             }
             Event::Connected(id, stream) => self.clients.push(Client::connected(id, self.wire, stream)),
             Event::Left(id) => {
-                let (left, here) = std::mem::take(&mut self.clients).into_iter().partition(|client| client.id == id);
-                self.clients = here;
-                let left: Vec<Client> = left;
-                left.iter().for_each(|client| {
+                let gone = |client: &mut Client| client.id == id;
+                for client in self.clients.extract_if(.., gone) {
                     self.left.0 += client.dropped;
                     self.left.1 += client.malformed;
-                });
+                }
             }
             Event::Control(line, answer) => {
                 // A client of the socket that left does not wait for its answer.

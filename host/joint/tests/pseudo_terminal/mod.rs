@@ -3,12 +3,8 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::thread;
 use std::time::Duration;
-
-use rustix::fs::{OFlags, fcntl_setfl};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
 const PAUSE: Duration = Duration::from_millis(1);
 
@@ -17,15 +13,8 @@ pub struct Master(File);
 
 /// Far end, near end and path of a new port.
 pub fn pair() -> (Master, File, String) {
-    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo-terminal");
-    grantpt(&master).expect("a port of our own");
-    unlockpt(&master).expect("a port that can be opened");
-    let path = ptsname(&master, Vec::new()).expect("a name").into_string().expect("plain letters");
-    fcntl_setfl(&master, OFlags::NONBLOCK).expect("reads that do not wait");
-    // As the controlling terminal of this process, its hang-up would end the process.
-    let not_ours = OFlags::NOCTTY.bits() as i32;
-    let slave = File::options().read(true).write(true).custom_flags(not_ours).open(&path).expect("the near end");
-    (Master(File::from(master)), slave, path)
+    let (far, near, path) = twin::terminal::pair().expect("a pseudo-terminal");
+    (Master(far), near, path)
 }
 
 impl Read for Master {

@@ -13,7 +13,7 @@ use drives::Frame;
 use drives::frame::Kind;
 
 use super::slcan::identifier;
-use super::{Lines, Packet, Received, Wire, hex};
+use super::{Lines, Packet, Received, Wire, hex, is_line_end};
 
 /// State of an adapter.
 #[derive(Debug, Default)]
@@ -78,11 +78,10 @@ impl Fdcanusb {
 impl Wire for Fdcanusb {
     fn receive(&mut self, bytes: &[u8]) -> Vec<Received> {
         let mut received = Vec::new();
-        for byte in bytes {
-            match self.lines.push(*byte, matches!(byte, b'\r' | b'\n')) {
-                Some(Some(line)) => self.line(&line, &mut received),
-                Some(None) => received.push(Received::Malformed),
-                None => {}
+        for line in self.lines.take(bytes, is_line_end) {
+            match line {
+                Some(line) => self.line(&line, &mut received),
+                None => received.push(Received::Malformed),
             }
         }
         received

@@ -80,19 +80,28 @@ impl Lines {
     /// Longest command: a CAN FD frame in hexadecimal digits with flags and checksum.
     const MAX_LENGTH: usize = 256;
 
-    /// Takes a byte; returns a line without its end. An overlong line gives `None` in the inner value.
-    fn push(&mut self, byte: u8, is_end: bool) -> Option<Option<String>> {
-        if !is_end {
-            self.is_too_long |= self.line.len() >= Self::MAX_LENGTH;
-            if !self.is_too_long {
-                self.line.push(byte);
+    /// Takes bytes; returns the lines that they complete, without their ends, and `None` for a line that is too long.
+    fn take(&mut self, bytes: &[u8], is_end: fn(u8) -> bool) -> Vec<Option<String>> {
+        let mut lines = Vec::new();
+        for byte in bytes {
+            if is_end(*byte) {
+                let line = std::mem::take(&mut self.line);
+                let is_too_long = std::mem::take(&mut self.is_too_long);
+                lines.push((!is_too_long).then(|| String::from_utf8_lossy(&line).into_owned()));
+            } else {
+                self.is_too_long |= self.line.len() >= Self::MAX_LENGTH;
+                if !self.is_too_long {
+                    self.line.push(*byte);
+                }
             }
-            return None;
         }
-        let line = std::mem::take(&mut self.line);
-        let is_too_long = std::mem::take(&mut self.is_too_long);
-        Some((!is_too_long).then(|| String::from_utf8_lossy(&line).into_owned()))
+        lines
     }
+}
+
+/// True for the end of a line of an adapter: either of the two that clients send.
+fn is_line_end(byte: u8) -> bool {
+    matches!(byte, b'\r' | b'\n')
 }
 
 #[cfg(test)]

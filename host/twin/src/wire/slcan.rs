@@ -14,7 +14,7 @@
 use drives::Frame;
 use drives::frame::{Id, Kind, extended, flexible_length, standard};
 
-use super::{Lines, Packet, Received, Wire, hex};
+use super::{Lines, Packet, Received, Wire, hex, is_line_end};
 
 /// Data lengths by DLC.
 const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
@@ -51,15 +51,8 @@ impl Slcan {
 
 impl Wire for Slcan {
     fn receive(&mut self, bytes: &[u8]) -> Vec<Received> {
-        let mut received = Vec::new();
-        for byte in bytes {
-            match self.lines.push(*byte, matches!(byte, b'\r' | b'\n')) {
-                Some(Some(line)) => received.extend(self.command(&line)),
-                Some(None) => received.push(Received::Malformed),
-                None => {}
-            }
-        }
-        received
+        let lines = self.lines.take(bytes, is_line_end).into_iter();
+        lines.filter_map(|line| line.map_or(Some(Received::Malformed), |line| self.command(&line))).collect()
     }
 
     fn encode(&mut self, packet: &Packet) -> Option<Vec<u8>> {

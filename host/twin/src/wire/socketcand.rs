@@ -50,15 +50,8 @@ impl Socketcand {
 
 impl Wire for Socketcand {
     fn receive(&mut self, bytes: &[u8]) -> Vec<Received> {
-        let mut received = Vec::new();
-        for byte in bytes {
-            match self.lines.push(*byte, *byte == b'>') {
-                Some(Some(line)) => received.push(self.command(&line)),
-                Some(None) => received.push(Received::Malformed),
-                None => {}
-            }
-        }
-        received
+        let lines = self.lines.take(bytes, |byte| byte == b'>').into_iter();
+        lines.map(|line| line.map_or(Received::Malformed, |line| self.command(&line))).collect()
     }
 
     fn encode(&mut self, packet: &Packet) -> Option<Vec<u8>> {

@@ -3,12 +3,13 @@
 //! [`imports`] finds cycles between the folders of a crate, [`members`] checks imports between crates, [`page`] compares
 //! them with the tables in ARCHITECTURE.md, [`size`] counts lines. [`links`] follows the links of the Markdown pages,
 //! [`equations`] compares numbered equations of docs/theory with the code, [`unsafe_code`] compares every `unsafe` with its
-//! list, [`dependencies`] checks third-party packages.
+//! list, [`dependencies`] checks third-party packages, [`features`] checks that builds share packages.
 //!
 //! `cargo test -p structure -- --nocapture` also prints the table of crates.
 
 pub mod dependencies;
 pub mod equations;
+pub mod features;
 pub mod imports;
 pub mod links;
 pub mod members;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use structure::links::{Pages, broken, headings, named, unlisted};
 use structure::members::{Kind, Member, Workspace};
-use structure::{dependencies, page, size, unsafe_code};
+use structure::{dependencies, features, page, size, unsafe_code};
 
 fn member(name: &str, folder: &str, imports: &[(&str, Kind)]) -> Member {
     let imports = imports.iter().map(|(name, kind)| (name.to_string(), *kind)).collect();
@@ -207,6 +207,15 @@ fn unlisted_unsafe_is_found() {
     assert_eq!(crates("", forbids), [""; 0]);
     assert!(crates("", "")[0].starts_with("b/Cargo.toml: `unsafe` is not forbidden"));
     assert!(crates(forbids, forbids)[0].starts_with("a/Cargo.toml forbids what"));
+}
+
+#[test]
+fn package_built_twice_is_found() {
+    let tests =
+        features::parse("serde v1.0.0\tdefault,std\nserde v1.0.0\tdefault,derive,std\nmemchr v2.0.0\tstd (*)\n");
+    let command = |tree: &str| features::unshared(&features::parse(tree), &tests);
+    assert_eq!(command("serde v1.0.0\tdefault,std (*)\nmemchr v2.0.0\tstd\nclap v4.0.0\t\n"), [""; 0]);
+    assert!(command("serde v1.0.0\tstd\n")[0].starts_with("serde v1.0.0: features [\"std\"]"));
 }
 
 /// A dependency from another source or with another licence is found.

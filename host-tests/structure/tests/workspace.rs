@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use structure::imports::{Imports, Sources};
 use structure::members::{Member, Workspace};
-use structure::{dependencies, equations, links, page, size, unsafe_code};
+use structure::{dependencies, equations, features, links, page, size, unsafe_code};
 
 static WORKSPACE: LazyLock<Workspace> = LazyLock::new(|| Workspace::read(&root()));
 /// Rust files of the members with their texts, whatever target each belongs to.
@@ -221,4 +221,15 @@ fn dependencies_have_allowed_licences() {
 #[test]
 fn equation_numbers_of_pages_and_code_agree() {
     assert_no_findings(equations::mismatches(&root()));
+}
+
+#[test]
+fn command_and_tests_share_a_build() {
+    let tests = features::of(&root(), &["--edges", "normal,build,dev"]);
+    let command = features::of(&root(), &["--edges", "normal,build", "--package", "joint"]);
+    assert!(command.len() > 100 && tests.len() > command.len());
+    assert_no_findings(features::unshared(&command, &tests));
+    let research = ["paper", "comparison", "benchmark", "baselines"].map(|package| ["--package", package]).concat();
+    let research = features::of(&root(), &[&["--edges", "normal,build,dev"], &research[..]].concat());
+    assert_no_findings(features::unshared(&research, &tests));
 }

@@ -6,11 +6,11 @@ use std::path::Path;
 use defmt_decoder::{DecodeError, Table};
 
 use report::failure::{Failure, Outcome};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A decoded log line.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LogLine {
     /// The board's own time stamp, as printed.
     pub timestamp: String,

@@ -3,11 +3,11 @@
 use link::messages::Trip;
 
 use report::failure::Failure;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Trip that the board reported.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FaultEntry {
     /// Tick of the trip, if it has one.
     pub tick: Option<u32>,

@@ -1,6 +1,6 @@
 //! Test: the published schemas of this crate's JSON match its types.
 
-use report::schema::assert_published;
+use published_schema::assert_published;
 
 use crate::findings::Record;
 use crate::memory::Content;

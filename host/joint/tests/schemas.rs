@@ -4,7 +4,7 @@ mod command;
 
 use std::fs;
 
-use report::schema::assert_valid;
+use published_schema::assert_valid;
 use serde_json::Value;
 
 use command::{QUICK_ROWS, folder, joint, json, text, write_short_log};

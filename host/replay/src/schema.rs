@@ -1,6 +1,6 @@
 //! Tests: the published schema of a replay's record matches its type.
 
-use report::schema::{assert_explained, assert_published};
+use published_schema::{assert_explained, assert_published};
 
 use crate::ReplayRecord;
 

@@ -1,6 +1,7 @@
 //! Contact states over time as rows of coloured strips, one row for each mesh. A strip that covers many samples shows
 //! the share of each state by height.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::plot::ink::Ink;
@@ -9,8 +10,7 @@ use crate::plot::panel::{Panel, VerticalAxis};
 use crate::plot::unit::Unit;
 
 /// Contact state of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(into = "u8", try_from = "u8")]
 pub enum Contact {
     /// No flank in contact: 0.

@@ -18,8 +18,6 @@ pub mod panels;
 pub mod plot;
 pub mod progress;
 pub mod provenance;
-#[cfg(feature = "schema")]
-pub mod schema;
 pub mod seeds;
 pub mod spectrum;
 pub mod workspace;

@@ -3,7 +3,7 @@
 
 use super::metrics::METRICS;
 use super::record::TestsRecord;
-use report::schema::{assert_explained, assert_published};
+use published_schema::{assert_explained, assert_published};
 
 #[test]
 fn schema_equals_types() {

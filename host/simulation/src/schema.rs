@@ -1,6 +1,6 @@
 //! Tests: the published schemas of this crate's JSON equal those of its types.
 
-use report::schema::assert_published;
+use published_schema::assert_published;
 
 use crate::budget::BudgetSummary;
 use crate::check::CheckSummary;

@@ -1,6 +1,6 @@
 //! Test that the published schema of a comparison equals its type's.
 
-use report::schema::assert_published;
+use published_schema::assert_published;
 
 use crate::BenchmarkRecord;
 

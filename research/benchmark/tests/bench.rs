@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use report::schema::assert_valid;
+use published_schema::assert_valid;
 use serde_json::Value;
 
 /// Runs the program to its end, with output as wide as its messages.

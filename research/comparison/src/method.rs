@@ -1,11 +1,11 @@
 //! Fixed-step methods by name: those in common use, the paper's, and the core's own step. They are implemented in `baselines` and in the
 //! core.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A fixed-step method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// The core's step.

@@ -2,7 +2,7 @@
 //! tests are here.
 
 use super::record::StudyRecord;
-use report::schema::{assert_explained, assert_published};
+use published_schema::{assert_explained, assert_published};
 
 #[test]
 fn published_study_schema_equals_types() {

@@ -2,6 +2,7 @@
 //! determine it.
 
 use report::number::ESTIMATE;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::estimate::Estimate;
@@ -16,8 +17,7 @@ pub(super) const CONFOUNDED: &str = "in this motion it goes with something else,
 const MODEL_ERROR: f64 = 0.003;
 
 /// One parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(any(test, feature = "schema"), derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Finding {
     /// Name of the parameter.
     pub name: String,

@@ -1,7 +1,7 @@
 //! Tests: the published schema of a run matches its types, and `docs/reference/report-schema.md` explains every key.
 
 use super::RunRecord;
-use report::schema::{assert_explained, assert_published};
+use published_schema::{assert_explained, assert_published};
 
 #[test]
 fn schema_matches_types() {

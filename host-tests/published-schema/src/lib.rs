@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde_json::Value;
 
-use crate::workspace::workspace;
+use report::workspace::workspace;
 
 fn document(name: &str) -> PathBuf {
     workspace().join("docs/reference").join(name)

@@ -33,7 +33,7 @@ from lerobot.motors import Motor, MotorNormMode  # noqa: E402: they take the mod
 NAME = "hip"
 
 
-def again(call, clear=lambda: None, seconds=20.0):
+def again(call, clear=lambda: None, seconds=60.0):
     """Result of a call that fails as long as an answer is late: LeRobot waits 1 ms for a Damiao. The Feetech SDK takes a
     late answer for that to its next instruction, finds too few bytes in it, and needs a pause and an empty buffer."""
     end = time.monotonic() + seconds
@@ -120,7 +120,7 @@ def feetech():
     steadily(bus.configure_motors)
     steadily(bus.write, "Operating_Mode", NAME, OperatingMode.POSITION.value)
     steadily(bus.write_calibration, {NAME: MotorCalibration(1, 0, 0, 0, 4095)})
-    check(steadily(lambda: bus.is_calibrated), "the calibration reads back")
+    wait_for(lambda: steadily(lambda: bus.is_calibrated), "the calibration reads back")
 
     def positions():
         return steadily(bus.read, "Present_Position", NAME) / 360, link()

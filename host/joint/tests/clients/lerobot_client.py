@@ -64,7 +64,16 @@ def damiao(motor_type):
     motor = Motor(1, "damiao", MotorNormMode.DEGREES, motor_type_str=motor_type, recv_id=0x11)
     # A port below /dev makes LeRobot choose slcan.
     bus = DamiaoMotorsBus(os.path.realpath(PORT), {NAME: motor}, use_can_fd=False)
-    again(bus.connect)
+
+    def connect():
+        try:
+            bus.connect()
+        except ConnectionError:
+            # The bus of a failed handshake stays open, and would close the adapter once the next one has opened it.
+            bus.canbus.shutdown()
+            raise
+
+    again(connect)
     wait_for(lambda: state() == ("Enabled", None), "the handshake enables the drive")
 
     def positions():

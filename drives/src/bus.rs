@@ -11,6 +11,12 @@ pub trait CanServer {
 
     /// Runs once each control period, after [`Drive::step`]: cyclic frames, reactions to faults.
     fn tick(&mut self, drive: &mut Drive, send: Send<'_>);
+
+    /// Notes that the CAN controller went off the bus (`is_off`) or returned. Most makers leave that to their watchdog,
+    /// since no frame arrives meanwhile.
+    fn bus_off(&mut self, is_off: bool, drive: &mut Drive, send: Send<'_>) {
+        let _ = (is_off, drive, send);
+    }
 }
 
 /// Drive on a serial bus as its clients see it.

@@ -33,6 +33,7 @@ pub mod moteus;
 pub mod odrive;
 pub mod scale;
 pub mod turns;
+pub mod value;
 
 pub use drive::{Drive, Settings};
 pub use frame::Frame;

@@ -10,7 +10,15 @@ import time
 
 import pytest
 
-JOINT = os.environ.get("JOINT") or shutil.which("joint")
+JOINT = shutil.which(os.environ.get("JOINT", "joint"))
+
+
+def pytest_sessionstart(session):
+    """Ends the run before its first test if there is no command to test with."""
+    if JOINT is None:
+        raise pytest.UsageError(
+            f"the command `{os.environ.get('JOINT', 'joint')}` was not found: build it by `cargo build --package joint` "
+            "and set JOINT to target/debug/joint of the repository, or put it on the PATH")
 
 
 class Twin:
@@ -65,8 +73,6 @@ class Twin:
 @pytest.fixture
 def twin(request, tmp_path):
     """Twin of one test. Its options are an indirect parameter: dict(drive=..., joint=..., seed=...)."""
-    if JOINT is None:
-        pytest.skip("set JOINT to the command `joint`, or put it on the PATH")
     twin = Twin(tmp_path, **getattr(request, "param", {}))
     yield twin
     twin.close()

@@ -4,6 +4,8 @@ use crate::drive::Fault;
 
 /// Life guarding or heartbeat failed.
 pub const LIFE_GUARD: u16 = 0x8130;
+/// The node returned from bus-off.
+pub const BUS_OFF: u16 = 0x8140;
 /// The node was stopped or reset in operation.
 pub const COMMUNICATION: u16 = 0x8100;
 /// A PDO was too short for its mapping.

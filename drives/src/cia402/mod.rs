@@ -30,8 +30,9 @@
 //! Encoders: motor encoder in 6064h, 6063h, 606Ch; output encoder in 60E4h:01, 60E5h:01, with its counts in 60E6h:01.
 //!
 //! Watchdog: heartbeats of the node in 1016h:01, guarding requests (100Ch times 100Dh), and RPDOs whose event timer is
-//! not zero. If one is late, or the node is stopped or reset, 6007h decides over an enabled drive: 0 nothing, 1 fault,
-//! 2 disable voltage, 3 quick stop. Life guarding and heartbeat change the network state by 1029h:01.
+//! not zero. If one is late, the CAN controller goes off the bus, or the node is stopped or reset, 6007h decides over an
+//! enabled drive: 0 nothing, 1 fault, 2 disable voltage, 3 quick stop. Life guarding, heartbeat and bus-off change the
+//! network state by 1029h:01. Bus-off is reported as 8140h once the controller has returned.
 //!
 //! Targets: an enabled drive without a target holds its angle. Target position, velocity and torque are those since the
 //! drive was last disabled; until a client writes one, the position is the present angle, the others are zero.
@@ -261,6 +262,15 @@ impl CanServer for Server {
         if self.nmt == Nmt::Operational {
             self.send_pdos(pdo::Trigger::Time, None, drive, send);
         }
+    }
+
+    fn bus_off(&mut self, is_off: bool, drive: &mut Drive, send: Send<'_>) {
+        if is_off {
+            self.lose_connection(fault::BUS_OFF, drive);
+        } else {
+            self.return_from_loss(true);
+        }
+        self.send_emergencies(send);
     }
 }
 

@@ -86,20 +86,25 @@ impl Server {
         }
     }
 
+    /// Reacts to a lost connection by 1029h:01 and 6007h, and reports it by an error code.
+    pub(super) fn lose_connection(&mut self, code: u16, drive: &mut Drive) {
+        self.is_alone = true;
+        match self.stored(object::COMMUNICATION_ERROR_BEHAVIOUR) {
+            0 if self.nmt == Nmt::Operational => self.set_nmt(Nmt::PreOperational),
+            2 => self.set_nmt(Nmt::Stopped),
+            _ => {}
+        }
+        if !self.abort_connection(code, drive) {
+            self.raise(code);
+        }
+    }
+
     /// Monitors the master and the RPDOs.
     pub(super) fn monitor(&mut self, drive: &mut Drive) {
         let life_time = self.stored(object::GUARD_TIME) * self.stored(object::LIFE_TIME_FACTOR);
         let heartbeat_time = self.consumer().1;
         if self.heartbeat.expires(self.now, heartbeat_time) | self.guarding.expires(self.now, life_time) {
-            self.is_alone = true;
-            match self.stored(object::COMMUNICATION_ERROR_BEHAVIOUR) {
-                0 if self.nmt == Nmt::Operational => self.set_nmt(Nmt::PreOperational),
-                2 => self.set_nmt(Nmt::Stopped),
-                _ => {}
-            }
-            if !self.abort_connection(fault::LIFE_GUARD, drive) {
-                self.raise(fault::LIFE_GUARD);
-            }
+            self.lose_connection(fault::LIFE_GUARD, drive);
         }
         for number in 0..PDO_COUNT {
             let time = self.stored(Address::new(Direction::Receive.parameters(number), 5));

@@ -565,6 +565,25 @@ fn lost_heartbeat_acts_by_the_option() {
 }
 
 #[test]
+fn bus_off_acts_by_the_option() {
+    let ends = [State::OperationEnabled, State::Fault, State::SwitchOnDisabled, State::SwitchOnDisabled];
+    for (option, end) in (0..).zip(ends) {
+        let mut bench = Bench::enabled(Mode::CyclicPosition);
+        bench.write(object::ABORT_CONNECTION_OPTION, option);
+        bench.sent.clear();
+        let Bench { server, drive, sent, .. } = &mut bench;
+        server.bus_off(true, drive, &mut |frame| sent.push(frame));
+        bench.run(10);
+        assert_eq!((bench.server.state(), bench.server.nmt()), (end, Nmt::PreOperational), "{option}");
+        assert_eq!(bench.emergencies(), [(0x8140, 0x11)], "{option}");
+        let Bench { server, drive, sent, .. } = &mut bench;
+        server.bus_off(false, drive, &mut |frame| sent.push(frame));
+        let expected: &[(u16, u8)] = if end == State::Fault { &[] } else { &[(0, 0)] };
+        assert_eq!(bench.emergencies(), expected, "{option}");
+    }
+}
+
+#[test]
 fn error_behaviour_decides_over_the_network_state() {
     for (behaviour, end) in [(0, Nmt::PreOperational), (1, Nmt::Operational), (2, Nmt::Stopped)] {
         let mut bench = monitored(1);

@@ -43,9 +43,7 @@ impl Client {
     /// Frame that writes a parameter; `None` if the model does not have it or the value is of another kind.
     pub fn write(&self, parameter: Parameter, value: Value) -> Option<Frame> {
         let bytes = value.to_bytes();
-        // NaN is equal to nothing: kinds are compared by their bytes.
-        let is_of_kind =
-            core::mem::discriminant(&Value::from_bytes(parameter.kind(), bytes)) == core::mem::discriminant(&value);
+        let is_of_kind = parameter.kind() == value.kind();
         self.command(Command::Write(self.model.index(parameter)?, bytes)).filter(|_| is_of_kind)
     }
 

@@ -1,73 +1,7 @@
 //! Parameters: index, kind and access of each, shared by drive and client.
 
 use super::model::{Model, Sheet};
-
-/// Kind of a value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Whole number of 8 bits.
-    U8,
-    /// Whole number of 16 bits with a sign.
-    I16,
-    /// Whole number of 16 bits.
-    U16,
-    /// Whole number of 32 bits.
-    U32,
-    /// Number with a fraction.
-    F32,
-}
-
-/// Value of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value {
-    /// Whole number of 8 bits.
-    U8(u8),
-    /// Whole number of 16 bits with a sign.
-    I16(i16),
-    /// Whole number of 16 bits.
-    U16(u16),
-    /// Whole number of 32 bits.
-    U32(u32),
-    /// Number with a fraction.
-    F32(f32),
-}
-
-impl Value {
-    /// Four bytes, low byte first.
-    pub fn to_bytes(self) -> [u8; 4] {
-        let two = |bytes: [u8; 2]| [bytes[0], bytes[1], 0, 0];
-        match self {
-            Self::U8(value) => [value, 0, 0, 0],
-            Self::I16(value) => two(value.to_le_bytes()),
-            Self::U16(value) => two(value.to_le_bytes()),
-            Self::U32(value) => value.to_le_bytes(),
-            Self::F32(value) => value.to_le_bytes(),
-        }
-    }
-
-    /// Value of four bytes, low byte first.
-    pub fn from_bytes(kind: Kind, bytes: [u8; 4]) -> Self {
-        let [first, second, ..] = bytes;
-        match kind {
-            Kind::U8 => Self::U8(first),
-            Kind::I16 => Self::I16(i16::from_le_bytes([first, second])),
-            Kind::U16 => Self::U16(u16::from_le_bytes([first, second])),
-            Kind::U32 => Self::U32(u32::from_le_bytes(bytes)),
-            Kind::F32 => Self::F32(f32::from_le_bytes(bytes)),
-        }
-    }
-
-    /// Number, rounded to f32.
-    pub fn to_f32(self) -> f32 {
-        match self {
-            Self::U8(value) => value.into(),
-            Self::I16(value) => value.into(),
-            Self::U16(value) => value.into(),
-            Self::U32(value) => value as f32,
-            Self::F32(value) => value,
-        }
-    }
-}
+pub use crate::value::{Kind, Value};
 
 /// Parameter by its name in the makers' tables. All quantities are those of the output but for counts, `ModPos`,
 /// `Rotation`, `MechOffset` and currents.

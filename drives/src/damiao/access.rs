@@ -20,8 +20,8 @@ impl Server {
     /// Value of a register; `None` for the output encoder of a drive that has none.
     pub(super) fn read(&self, register: Register, drive: &Drive) -> Option<Value> {
         match register.form() {
-            Form::Whole(_) => Some(Value::Whole(self.read_whole(register, drive))),
-            Form::Float(_) => self.read_float(register, drive).map(Value::Float),
+            Form::Whole(_) => Some(Value::U32(self.read_whole(register, drive))),
+            Form::Float(_) => self.read_float(register, drive).map(Value::F32),
         }
     }
 
@@ -77,8 +77,9 @@ impl Server {
             return false;
         }
         match value {
-            Value::Float(value) => self.write_float(register, value, drive),
-            Value::Whole(value) => self.write_whole(register, value, drive),
+            Value::F32(value) => self.write_float(register, value, drive),
+            Value::U32(value) => self.write_whole(register, value, drive),
+            _ => return false,
         }
         true
     }

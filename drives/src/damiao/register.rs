@@ -1,5 +1,7 @@
 //! Registers of a drive: address, name, type and range.
 
+pub use crate::value::Value;
+
 /// Type of a register, with the range of values that it accepts; `None` for one that can only be read.
 #[derive(Debug, Clone, Copy)]
 pub enum Form {
@@ -7,25 +9,6 @@ pub enum Form {
     Float(Option<fn(f32) -> bool>),
     /// u32.
     Whole(Option<fn(u32) -> bool>),
-}
-
-/// Value of a register.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value {
-    /// f32.
-    Float(f32),
-    /// u32.
-    Whole(u32),
-}
-
-impl Value {
-    /// Bytes of the value, low byte first.
-    pub fn to_bytes(self) -> [u8; 4] {
-        match self {
-            Self::Float(value) => value.to_le_bytes(),
-            Self::Whole(value) => value.to_le_bytes(),
-        }
-    }
 }
 
 macro_rules! registers {
@@ -187,16 +170,16 @@ impl Register {
     /// Value of four bytes.
     pub fn value(self, bytes: [u8; 4]) -> Value {
         match self.form() {
-            Float(_) => Value::Float(f32::from_le_bytes(bytes)),
-            Whole(_) => Value::Whole(u32::from_le_bytes(bytes)),
+            Float(_) => Value::F32(f32::from_le_bytes(bytes)),
+            Whole(_) => Value::U32(u32::from_le_bytes(bytes)),
         }
     }
 
     /// True if the register can be written and the value is in its range.
     pub fn accepts(self, value: Value) -> bool {
         match (self.form(), value) {
-            (Float(Some(accepts)), Value::Float(value)) => accepts(value),
-            (Whole(Some(accepts)), Value::Whole(value)) => accepts(value),
+            (Float(Some(accepts)), Value::F32(value)) => accepts(value),
+            (Whole(Some(accepts)), Value::U32(value)) => accepts(value),
             _ => false,
         }
     }

@@ -77,7 +77,7 @@ impl Bus {
 
     fn read_float(&mut self, register: Register) -> f32 {
         match self.read(register) {
-            Some(Value::Float(value)) => value,
+            Some(Value::F32(value)) => value,
             other => panic!("{other:?}"),
         }
     }
@@ -90,7 +90,7 @@ impl Bus {
     }
 
     fn change_mode(&mut self, mode: Mode) {
-        assert!(self.write(Register::ControlMode, Value::Whole(mode.code())));
+        assert!(self.write(Register::ControlMode, Value::U32(mode.code())));
     }
 }
 
@@ -131,8 +131,8 @@ fn commands_equal_those_of_the_client_package() {
     }
     let parameters = [
         (CLIENT.read(Register::OutputPosition), [0x01, 0x00, 0x33, 0x51, 0x00, 0x00, 0x00, 0x00]),
-        (CLIENT.write(Register::Timeout, Value::Whole(2000)), [0x01, 0x00, 0x55, 0x09, 0xD0, 0x07, 0x00, 0x00]),
-        (CLIENT.write(Register::VelocityGain, Value::Float(0.01)), [0x01, 0x00, 0x55, 0x19, 0x0A, 0xD7, 0x23, 0x3C]),
+        (CLIENT.write(Register::Timeout, Value::U32(2000)), [0x01, 0x00, 0x55, 0x09, 0xD0, 0x07, 0x00, 0x00]),
+        (CLIENT.write(Register::VelocityGain, Value::F32(0.01)), [0x01, 0x00, 0x55, 0x19, 0x0A, 0xD7, 0x23, 0x3C]),
         (CLIENT.store(), [0x01, 0x00, 0xAA, 0x01, 0x00, 0x00, 0x00, 0x00]),
         (CLIENT.refresh(), [0x01, 0x00, 0xCC, 0x00, 0x00, 0x00, 0x00, 0x00]),
     ];
@@ -241,8 +241,8 @@ fn impedance_command_becomes_an_impedance() {
 #[test]
 fn other_modes_become_their_set_points() {
     let mut bus = Bus::new();
-    assert!(bus.write(Register::Acceleration, Value::Float(20.0)));
-    assert!(bus.write(Register::Deceleration, Value::Float(-8.0)));
+    assert!(bus.write(Register::Acceleration, Value::F32(20.0)));
+    assert!(bus.write(Register::Deceleration, Value::F32(-8.0)));
     bus.order(Order::Enable);
     bus.change_mode(Mode::PositionVelocity);
     bus.feedback(CLIENT.motion(&Motion::PositionVelocity { position: -2.0, max_velocity: 3.0 }));
@@ -282,7 +282,7 @@ fn mode_change_sets_commands_to_zero() {
     for mode in [Mode::ForcePosition, Mode::PositionVelocity, Mode::Velocity, Mode::Impedance] {
         bus.change_mode(mode);
         assert_eq!(bus.drive.state(), State::Enabled);
-        assert_eq!(bus.read(Register::ControlMode), Some(Value::Whole(mode.code())));
+        assert_eq!(bus.read(Register::ControlMode), Some(Value::U32(mode.code())));
         assert!(bus.step(1).abs() < 1e-3, "{mode:?}");
     }
 }
@@ -309,10 +309,10 @@ fn command_of_another_mode_is_ignored() {
 #[test]
 fn watchdog_reports_communication_lost() {
     let mut bus = Bus::new();
-    assert_eq!(bus.read(Register::Timeout), Some(Value::Whole(0)));
+    assert_eq!(bus.read(Register::Timeout), Some(Value::U32(0)));
     // 200 units of 50 us are 100 periods of 0.1 ms.
-    assert!(bus.write(Register::Timeout, Value::Whole(200)));
-    assert_eq!(bus.read(Register::Timeout), Some(Value::Whole(200)));
+    assert!(bus.write(Register::Timeout, Value::U32(200)));
+    assert_eq!(bus.read(Register::Timeout), Some(Value::U32(200)));
     bus.step(150);
     assert_eq!(bus.status(), Status::Disabled);
     bus.order(Order::Enable);
@@ -330,7 +330,7 @@ fn watchdog_reports_communication_lost() {
     assert_eq!(bus.order(Order::Enable), Status::CommunicationLost);
     assert_eq!(bus.order(Order::ClearError), Status::Disabled);
     assert_eq!(bus.order(Order::Enable), Status::Enabled);
-    assert!(bus.write(Register::Timeout, Value::Whole(0)));
+    assert!(bus.write(Register::Timeout, Value::U32(0)));
     bus.step(1000);
     assert_eq!(bus.status(), Status::Enabled);
 }
@@ -349,7 +349,7 @@ fn each_fault_has_its_status() {
     ];
     for (sensors, status) in cases {
         let mut bus = Bus::with(Settings { max_silent_periods: 1, ..Settings::default() });
-        assert!(bus.write(Register::OverCurrent, Value::Float(0.5)));
+        assert!(bus.write(Register::OverCurrent, Value::F32(0.5)));
         bus.order(Order::Enable);
         bus.sensors = sensors;
         bus.step(2);
@@ -436,7 +436,7 @@ fn registers_act_on_the_drive() {
         (Register::DampingFactor, 3.0),
     ];
     for (register, value) in writes {
-        assert!(bus.write(register, Value::Float(value)), "{register:?}");
+        assert!(bus.write(register, Value::F32(value)), "{register:?}");
         assert!((bus.read_float(register) - value).abs() < 1e-6 * value, "{register:?}");
     }
     let settings = bus.drive.settings();
@@ -446,7 +446,7 @@ fn registers_act_on_the_drive() {
     assert!((settings.max_current - 12.5).abs() < 1e-5);
     // A share of 0.02 of 2.5 N m, times the ratio of 6 squared.
     assert!((settings.gains.velocity - 1.8).abs() < 1e-5 && settings.gains.position == 12.0);
-    assert_eq!(bus.read(Register::PolePairs), Some(Value::Whole(14)));
+    assert_eq!(bus.read(Register::PolePairs), Some(Value::U32(14)));
     assert_eq!(bus.read_float(Register::GearRatio), 6.0);
 }
 
@@ -454,16 +454,16 @@ fn registers_act_on_the_drive() {
 fn value_out_of_range_is_not_written() {
     let mut bus = Bus::new();
     let refused = [
-        (Register::UnderVoltage, Value::Float(10.0)),
-        (Register::OverTemperature, Value::Float(200.0)),
-        (Register::OverCurrent, Value::Float(1.0)),
-        (Register::Acceleration, Value::Float(f32::NAN)),
-        (Register::Deceleration, Value::Float(5.0)),
-        (Register::MaxSpeed, Value::Float(f32::INFINITY)),
-        (Register::Id, Value::Whole(0x800)),
-        (Register::ControlMode, Value::Whole(5)),
-        (Register::GearRatio, Value::Float(1.0)),
-        (Register::MotorPosition, Value::Float(1.0)),
+        (Register::UnderVoltage, Value::F32(10.0)),
+        (Register::OverTemperature, Value::F32(200.0)),
+        (Register::OverCurrent, Value::F32(1.0)),
+        (Register::Acceleration, Value::F32(f32::NAN)),
+        (Register::Deceleration, Value::F32(5.0)),
+        (Register::MaxSpeed, Value::F32(f32::INFINITY)),
+        (Register::Id, Value::U32(0x800)),
+        (Register::ControlMode, Value::U32(5)),
+        (Register::GearRatio, Value::F32(1.0)),
+        (Register::MotorPosition, Value::F32(1.0)),
     ];
     for (register, value) in refused {
         let before = bus.read(register);
@@ -475,7 +475,7 @@ fn value_out_of_range_is_not_written() {
 #[test]
 fn ranges_hold_for_frames() {
     let mut bus = Bus::new();
-    assert!(bus.write(Register::PositionRange, Value::Float(25.0)));
+    assert!(bus.write(Register::PositionRange, Value::F32(25.0)));
     assert_eq!(bus.server.ranges().position, 25.0);
     bus.order(Order::Enable);
     bus.send(&CLIENT.motion(&impedance(1.0, 0.0, 0.0, 1.0, 0.0)).unwrap());
@@ -486,10 +486,10 @@ fn ranges_hold_for_frames() {
 #[test]
 fn identifiers_change_after_the_answer() {
     let mut bus = Bus::new();
-    assert!(bus.write(Register::FeedbackId, Value::Whole(0x12)));
+    assert!(bus.write(Register::FeedbackId, Value::U32(0x12)));
     let client = Client { feedback_id: 0x12, ..CLIENT };
-    let answers = bus.send(&client.write(Register::Id, Value::Whole(2)).unwrap());
-    assert_eq!(client.decode(&answers[0]), Some(Answer::Written(Register::Id, Value::Whole(2))));
+    let answers = bus.send(&client.write(Register::Id, Value::U32(2)).unwrap());
+    assert_eq!(client.decode(&answers[0]), Some(Answer::Written(Register::Id, Value::U32(2))));
     assert_eq!((bus.server.id(), bus.server.feedback_id()), (2, 0x12));
     assert!(bus.send(&client.refresh().unwrap()).is_empty());
     assert_eq!(bus.send(&Client { id: 2, ..client }.refresh().unwrap()).len(), 1);

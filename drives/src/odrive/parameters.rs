@@ -8,55 +8,10 @@ use super::server::Server;
 use super::units::Units;
 use super::{FIRMWARE_VERSION, HARDWARE_VERSION};
 use crate::drive::{Drive, State};
+pub use crate::value::Value;
 
 /// Encoder of the motor, `ONBOARD_ENCODER0`.
 const MOTOR_ENCODER: u8 = 13;
-
-/// Value of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Value {
-    /// Number with a fraction.
-    Float(f32),
-    /// Number of 32 bits.
-    U32(u32),
-    /// Number of 8 bits.
-    U8(u8),
-    /// Truth value.
-    Bool(bool),
-}
-
-impl Value {
-    /// Bytes on the wire, filled up with zeros.
-    pub fn to_bytes(self) -> [u8; 4] {
-        match self {
-            Self::Float(value) => value.to_le_bytes(),
-            Self::U32(value) => value.to_le_bytes(),
-            Self::U8(value) => u32::from(value).to_le_bytes(),
-            Self::Bool(value) => u32::from(value).to_le_bytes(),
-        }
-    }
-
-    /// Value of the same type from bytes on the wire.
-    pub fn with_bytes(self, bytes: [u8; 4]) -> Self {
-        let word = u32::from_le_bytes(bytes);
-        match self {
-            Self::Float(_) => Self::Float(f32::from_bits(word)),
-            Self::U32(_) => Self::U32(word),
-            Self::U8(_) => Self::U8(word as u8),
-            Self::Bool(_) => Self::Bool(word as u8 != 0),
-        }
-    }
-
-    /// Type as `flat_endpoints.json` names it.
-    pub fn type_name(self) -> &'static str {
-        match self {
-            Self::Float(_) => "float",
-            Self::U32(_) => "uint32",
-            Self::U8(_) => "uint8",
-            Self::Bool(_) => "bool",
-        }
-    }
-}
 
 /// Entry of the table.
 #[derive(Debug, Clone, Copy)]
@@ -283,7 +238,7 @@ pub(super) fn read(endpoint: &Endpoint, server: &Server, drive: &Drive) -> Value
             drive.feedback().output_position.map_or(f32::NAN, |angle| turn_fraction(angle.to_bits()))
         }
     };
-    Value::Float(float)
+    Value::F32(float)
 }
 
 /// Fraction of a turn, from 0 to below 1, of an angle in 2^-32 turns.

@@ -98,14 +98,14 @@ impl Bench {
         self.sent.clear();
         self.command(client::read_parameter(endpoint_of(path)?.id));
         match client::decode(Firmware::V0_6, self.sent.first()?)?.1 {
-            Report::Parameter(answer) => Some(like.with_bytes(answer.value)),
+            Report::Parameter(answer) => Some(Value::from_bytes(like.kind(), answer.value)),
             _ => None,
         }
     }
 
     fn float(&mut self, path: &str) -> f32 {
-        match self.parameter(path, Value::Float(0.0)) {
-            Some(Value::Float(value)) => value,
+        match self.parameter(path, Value::F32(0.0)) {
+            Some(Value::F32(value)) => value,
             other => panic!("{path}: {other:?}"),
         }
     }
@@ -197,7 +197,7 @@ fn commands_have_the_bytes_of_the_dbc() {
             &[0, 0, 0, 0x3f, 0, 0, 0xc0, 0x3f],
         ),
         (V0_6, Command::SetState(RequestedState { state: 8 }), 0x27, &[8, 0, 0, 0, 0, 0, 0, 0]),
-        (V0_6, client::write_parameter(388, Value::Float(10.0)), 0x24, &[1, 0x84, 1, 0, 0, 0, 0x20, 0x41]),
+        (V0_6, client::write_parameter(388, Value::F32(10.0)), 0x24, &[1, 0x84, 1, 0, 0, 0, 0x20, 0x41]),
         (
             V0_6,
             Command::SetAddress(Address { node_id: 7, serial_number, connection: 0 }),
@@ -459,7 +459,7 @@ fn velocity_is_limited() {
 #[test]
 fn ramps_have_the_rates_of_the_configuration() {
     let mut bench = Bench::enabled(Firmware::V0_6, control_mode::VELOCITY_CONTROL, input_mode::VEL_RAMP);
-    bench.write("axis0.controller.config.vel_ramp_rate", Value::Float(5.0));
+    bench.write("axis0.controller.config.vel_ramp_rate", Value::F32(5.0));
     bench.command(Command::SetInertia(Inertia { inertia: 0.02 }));
     bench.command(Command::SetVelocityGains(VelocityGains { gain: 0.1, integrator: 0.0 }));
     bench.command(Command::SetInputVelocity(InputVelocity { velocity: 3.0, torque: 0.0 }));
@@ -469,7 +469,7 @@ fn ramps_have_the_rates_of_the_configuration() {
     bench.run(1000);
     assert_near(bench.float("axis0.controller.vel_setpoint"), 3.0);
     bench.modes(control_mode::TORQUE_CONTROL, input_mode::TORQUE_RAMP);
-    bench.write("axis0.controller.config.torque_ramp_rate", Value::Float(2.0));
+    bench.write("axis0.controller.config.torque_ramp_rate", Value::F32(2.0));
     bench.command(Command::SetInputTorque(InputTorque { torque: 0.5 }));
     bench.run(101);
     assert_near(bench.float("axis0.controller.torque_setpoint"), 0.202);
@@ -480,7 +480,7 @@ fn ramps_have_the_rates_of_the_configuration() {
 #[test]
 fn position_filter_is_critically_damped() {
     let mut bench = Bench::enabled(Firmware::V0_6, control_mode::POSITION_CONTROL, input_mode::POS_FILTER);
-    bench.write("axis0.controller.config.input_filter_bandwidth", Value::Float(10.0));
+    bench.write("axis0.controller.config.input_filter_bandwidth", Value::F32(10.0));
     let start = bench.float("axis0.controller.pos_setpoint");
     bench.input_position(start + 1.0);
     bench.run(100);
@@ -781,7 +781,7 @@ fn watchdog_of_an_idle_axis_expires_with_firmware_0_5_only() {
 #[test]
 fn watchdog_is_set_by_parameters() {
     let mut bench = Bench::enabled(Firmware::V0_6, control_mode::TORQUE_CONTROL, input_mode::PASSTHROUGH);
-    bench.write("axis0.config.watchdog_timeout", Value::Float(0.03));
+    bench.write("axis0.config.watchdog_timeout", Value::F32(0.03));
     bench.run(100);
     assert_eq!(bench.drive.fault(), None);
     bench.write("axis0.config.enable_watchdog", Value::Bool(true));
@@ -803,15 +803,15 @@ fn parameters_keep_what_is_written() {
     let floats = ["pos_gain", "vel_gain", "vel_integrator_gain", "vel_integrator_limit", "vel_limit", "inertia"];
     for name in floats {
         let path = std::format!("axis0.controller.config.{name}");
-        bench.write(&path, Value::Float(1.234));
+        bench.write(&path, Value::F32(1.234));
         assert_near(bench.float(&path), 1.234);
     }
-    bench.write("axis0.config.motor.current_soft_max", Value::Float(7.0));
+    bench.write("axis0.config.motor.current_soft_max", Value::F32(7.0));
     assert_near(bench.drive.settings().torque_limit, 0.7);
     assert_near(bench.float("axis0.controller.config.vel_limit"), 1.234);
     bench.write("axis0.config.can.iq_msg_rate_ms", Value::U32(25));
     assert_eq!(bench.server.rate(0x14), Some(25));
-    bench.write("axis0.pos_estimate", Value::Float(9.0));
+    bench.write("axis0.pos_estimate", Value::F32(9.0));
     assert_near(bench.float("axis0.pos_estimate"), 0.0);
     bench.write("axis0.requested_state", Value::U8(axis_state::CLOSED_LOOP_CONTROL));
     assert_eq!(bench.parameter("axis0.is_armed", Value::Bool(false)), Some(Value::Bool(true)));

@@ -33,6 +33,12 @@ pub struct Arguments {
     /// Form of the frames on the line [default: fdcanusb for moteus, serial for feetech, else slcan]
     #[arg(long, value_enum)]
     pub wire: Option<WireName>,
+    /// Bit rate of the CAN bus, whose frames then take time [bit/s] [default: frames take no time]
+    #[arg(long, value_name = "BIT/S", value_parser = bit_rate)]
+    pub bitrate: Option<f64>,
+    /// Lets joints have one identifier, so that their frames collide
+    #[arg(long)]
+    pub same_id: bool,
     /// TCP port of socketcand on 127.0.0.1; 0 lets the system choose
     #[arg(long, value_name = "PORT", default_value_t = 29536)]
     pub port: u16,
@@ -85,6 +91,10 @@ fn speed(text: &str) -> Result<f64, String> {
 
 fn duration(text: &str) -> Result<f64, String> {
     within(text, 0.001, 1e6, " s")
+}
+
+fn bit_rate(text: &str) -> Result<f64, String> {
+    within(text, 1e4, 1e6, " bit/s")
 }
 
 fn supply(text: &str) -> Result<f32, String> {

@@ -8,7 +8,9 @@
 //! | `supply_V` | number | voltage of the supply without a load |
 //! | `motor_temperature_C` | number | temperature of the winding |
 //! | `fault` | object | fault with the keys of `[[fault]]` in test files; times count from now |
-//! | `end_faults` | `true` | ends all faults |
+//! | `can_errors` | 0 to 1 | share of the frames that noise on the bus destroys |
+//! | `bus_off` | `true` | takes the CAN controllers of the drives off the bus, as a burst of errors does |
+//! | `end_faults` | `true` | ends all faults, and the noise on the bus |
 //! | `status` | `true` | state of the joints |
 
 use std::fmt::Write as _;
@@ -25,8 +27,10 @@ use scenario::file::{Fault, read_faults};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use crate::bus::Bus;
+use crate::bus_report::BusReport;
+use crate::can::ErrorState;
 use crate::event::Event;
-use crate::joint::Joint;
 
 /// Command of one line.
 #[derive(Debug, Default, Deserialize)]
@@ -42,6 +46,9 @@ pub struct Order {
     #[serde(rename = "motor_temperature_C")]
     motor_temperature: Option<f32>,
     fault: Option<Map<String, Value>>,
+    can_errors: Option<f64>,
+    #[serde(default)]
+    bus_off: bool,
     #[serde(default)]
     end_faults: bool,
     #[serde(default)]
@@ -59,6 +66,9 @@ pub enum Reply {
         /// States of the joints, if they were asked for.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         joints: Vec<Status>,
+        /// Figures of a CAN bus, if the states were asked for.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        bus: Option<BusReport>,
     },
     /// The command was refused as a whole.
     Refused {
@@ -89,6 +99,27 @@ pub struct Status {
     bus: f32,
     #[serde(rename = "motor_temperature_C")]
     motor_temperature: f32,
+    #[serde(flatten)]
+    can: Option<CanStatus>,
+    #[serde(flatten)]
+    compensated: Option<CompensatedStatus>,
+}
+
+/// State of observer and compensation in a drive.
+#[derive(Debug, Serialize)]
+struct CompensatedStatus {
+    observer_source: String,
+    observer_half_backlash_um: f32,
+    compensation_stage: String,
+    compensation_stepped_back: bool,
+}
+
+/// State of a drive's CAN controller.
+#[derive(Debug, Serialize)]
+struct CanStatus {
+    can_state: ErrorState,
+    transmit_errors: u16,
+    receive_errors: u16,
 }
 
 /// Socket for commands, removed at the end.
@@ -142,9 +173,9 @@ fn serve(stream: &UnixStream, events: &Sender<Event>) {
 }
 
 /// Carries out a line; returns the answer as JSON.
-pub fn execute(line: &str, joints: &mut [Joint<'_>]) -> String {
-    let reply = match read(line, joints) {
-        Ok((order, faults)) => apply(&order, &faults, joints),
+pub fn execute(line: &str, bus: &mut Bus<'_>) -> String {
+    let reply = match read(line, bus) {
+        Ok((order, faults)) => apply(&order, &faults, bus),
         Err(refused) => refused,
     };
     serde_json::to_string(&reply).unwrap_or_default()
@@ -155,7 +186,8 @@ fn refused(error: impl Into<String>, help: impl Into<String>) -> Reply {
 }
 
 /// Order and its faults, with times from zero, if all of it makes sense.
-fn read(line: &str, joints: &[Joint<'_>]) -> Result<(Order, Vec<Fault>), Reply> {
+fn read(line: &str, bus: &Bus<'_>) -> Result<(Order, Vec<Fault>), Reply> {
+    let joints = &bus.joints;
     let order: Order = serde_json::from_str(line)
         .map_err(|error| refused(error.to_string(), "write one JSON object a line: docs/reference/twin.md"))?;
     let numbers = [
@@ -163,6 +195,7 @@ fn read(line: &str, joints: &[Joint<'_>]) -> Result<(Order, Vec<Fault>), Reply> 
         ("half_backlash_um", order.half_backlash, 0.0, 1e4),
         ("supply_V", order.supply.map(f64::from), 0.0, 200.0),
         ("motor_temperature_C", order.motor_temperature.map(f64::from), -50.0, 500.0),
+        ("can_errors", order.can_errors, 0.0, 1.0),
     ];
     for (key, value, low, high) in numbers {
         if value.is_some_and(|value| !(low..=high).contains(&value)) {
@@ -172,6 +205,13 @@ fn read(line: &str, joints: &[Joint<'_>]) -> Result<(Order, Vec<Fault>), Reply> 
     if let Some(id) = order.joint.filter(|id| joints.iter().all(|joint| joint.id != *id)) {
         let known: Vec<String> = joints.iter().map(|joint| joint.id.to_string()).collect();
         return Err(refused(format!("no joint has the identifier {id}"), format!("write one of {}", known.join(", "))));
+    }
+    if bus.can.is_none() && (order.can_errors.is_some() || order.bus_off) {
+        let key = if order.bus_off { "bus_off" } else { "can_errors" };
+        return Err(refused(
+            format!("`{key}` concerns a CAN bus, and these drives are on a serial bus"),
+            "leave it out",
+        ));
     }
     let faults = match &order.fault {
         Some(fault) => read_faults(&toml(fault)?).map_err(|problems| match problems.into_iter().next() {
@@ -199,10 +239,24 @@ fn toml(fault: &Map<String, Value>) -> Result<String, Reply> {
     Ok(text)
 }
 
-fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
+fn apply(order: &Order, faults: &[Fault], bus: &mut Bus<'_>) -> Reply {
     let mut states = Vec::new();
-    let time_s = joints.first().map_or(0.0, Joint::time);
-    for joint in joints.iter_mut().filter(|joint| order.joint.is_none_or(|id| joint.id == id)) {
+    let time_s = bus.time();
+    let noise = if order.end_faults { Some(0.0) } else { order.can_errors };
+    if let Some(share) = noise.filter(|_| order.joint.is_none()) {
+        bus.set_noise(None, share);
+    }
+    for index in 0..bus.joints.len() {
+        if order.joint.is_some_and(|id| bus.joints[index].id != id) {
+            continue;
+        }
+        if let Some(share) = noise {
+            bus.set_noise(Some(index), share);
+        }
+        if order.bus_off {
+            bus.force_off(index);
+        }
+        let joint = &mut bus.joints[index];
         let (now, seed) = (joint.time(), joint.seed());
         if let Some(load) = order.load {
             joint.rig().set_external_torque(load);
@@ -223,13 +277,14 @@ fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
             joint.rig().inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
         }
         if order.status {
-            states.push(status(joint));
+            states.push(status(bus, index));
         }
     }
-    Reply::Done { time_s, joints: states }
+    Reply::Done { time_s, joints: states, bus: if order.status { BusReport::new(bus) } else { None } }
 }
 
-fn status(joint: &Joint<'_>) -> Status {
+fn status(bus: &Bus<'_>, index: usize) -> Status {
+    let joint = &bus.joints[index];
     let (truth, feedback) = (joint.truth(), joint.drive.feedback());
     Status {
         joint: joint.id,
@@ -245,5 +300,16 @@ fn status(joint: &Joint<'_>) -> Status {
         motor_torque: truth.motor_torque,
         bus: feedback.sensors.bus_voltage,
         motor_temperature: feedback.sensors.motor_temperature,
+        can: bus.can_state(index).map(|(can_state, (transmit_errors, receive_errors))| CanStatus {
+            can_state,
+            transmit_errors,
+            receive_errors,
+        }),
+        compensated: joint.compensated().map(|state| CompensatedStatus {
+            observer_source: format!("{:?}", state.source),
+            observer_half_backlash_um: 1e6 * state.half_backlash,
+            compensation_stage: format!("{:?}", state.stage),
+            compensation_stepped_back: state.is_stepped_back,
+        }),
     }
 }

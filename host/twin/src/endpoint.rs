@@ -15,6 +15,7 @@ use rustix::event::{PollFd, PollFlags, poll};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use crate::event::{ClientId, Event};
+use crate::gate::Gate;
 use crate::terminal;
 use crate::wire::{Packet, Received, Wire, WireName, wire};
 
@@ -126,9 +127,10 @@ impl Endpoint {
         port: u16,
         link: Option<&Path>,
         events: &Sender<Event>,
+        gate: &Gate,
     ) -> Outcome<(Self, Option<Client>)> {
         if name == WireName::Socketcand {
-            return listen(port, events).map(|endpoint| (endpoint, None));
+            return listen(port, events, gate).map(|endpoint| (endpoint, None));
         }
         let (far, near, path) =
             raw_terminal().map_err(|error| Failure::new(format!("cannot open a pseudo-terminal: {error}")))?;
@@ -136,8 +138,8 @@ impl Endpoint {
             link_to(&path, link)?;
         }
         let reader = far.try_clone().map_err(|error| Failure::new(format!("cannot read {path}: {error}")))?;
-        let events = events.clone();
-        thread::spawn(move || read_terminal(reader, &events));
+        let (events, gate) = (events.clone(), gate.clone());
+        thread::spawn(move || read_terminal(reader, &events, &gate));
         let client = Client::new(0, name, Writer::Terminal(far));
         let name = link.map_or(path, |link| link.display().to_string());
         Ok((Self { name, _near_end: Some(near), link: link.map(Path::to_owned) }, Some(client)))
@@ -182,15 +184,17 @@ fn link_to(path: &str, link: &Path) -> Outcome<()> {
     })
 }
 
-fn read_terminal(mut far: File, events: &Sender<Event>) {
+fn read_terminal(mut far: File, events: &Sender<Event>, gate: &Gate) {
     let mut buffer = [0_u8; 4096];
     loop {
+        gate.wait();
         let readable = poll(&mut [PollFd::new(&far.as_fd(), PollFlags::IN)], None);
         if readable.is_err_and(|error| error != rustix::io::Errno::INTR) {
             return;
         }
         match far.read(&mut buffer) {
             Ok(count) if count > 0 => {
+                gate.read(count);
                 if events.send(Event::bytes(0, &buffer[..count])).is_err() {
                     return;
                 }
@@ -201,14 +205,14 @@ fn read_terminal(mut far: File, events: &Sender<Event>) {
     }
 }
 
-fn listen(port: u16, events: &Sender<Event>) -> Outcome<Endpoint> {
+fn listen(port: u16, events: &Sender<Event>, gate: &Gate) -> Outcome<Endpoint> {
     let cannot = |error: io::Error| {
         Failure::new(format!("cannot listen on 127.0.0.1:{port}: {error}"))
             .with_help("name another --port; 0 lets the system choose")
     };
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(cannot)?;
     let name = listener.local_addr().map_err(cannot)?.port().to_string();
-    let events = events.clone();
+    let (events, gate) = (events.clone(), gate.clone());
     thread::spawn(move || {
         for (id, stream) in (1..).zip(listener.incoming().flatten()) {
             let Ok(reader) = stream.try_clone() else { continue };
@@ -216,20 +220,22 @@ fn listen(port: u16, events: &Sender<Event>) -> Outcome<Endpoint> {
             if stream.set_nonblocking(true).is_err() || events.send(Event::Connected(id, stream)).is_err() {
                 return;
             }
-            let events = events.clone();
-            thread::spawn(move || read_tcp(reader, id, &events));
+            let (events, gate) = (events.clone(), gate.clone());
+            thread::spawn(move || read_tcp(reader, id, &events, &gate));
         }
     });
     Ok(Endpoint { name, _near_end: None, link: None })
 }
 
-fn read_tcp(mut stream: TcpStream, id: ClientId, events: &Sender<Event>) {
+fn read_tcp(mut stream: TcpStream, id: ClientId, events: &Sender<Event>, gate: &Gate) {
     let mut buffer = [0_u8; 4096];
     loop {
+        gate.wait();
         // The descriptor does not block, since it is the one that is written to.
         let _ = poll(&mut [PollFd::new(&stream.as_fd(), PollFlags::IN)], None);
         match stream.read(&mut buffer) {
             Ok(count) if count > 0 => {
+                gate.read(count);
                 if events.send(Event::bytes(id, &buffer[..count])).is_err() {
                     return;
                 }

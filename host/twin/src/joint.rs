@@ -7,9 +7,9 @@ use drives::drive::{Feedback, Gains, Sensors, SetPoint, VirtualPower};
 use drives::turns::Ratio;
 use drives::{Drive, Settings, Turns};
 use joint_file::sheet;
-use model_core::compensation::Compensation;
+use model_core::compensation::{Compensation, Stage};
 use model_core::gears::Kinematics;
-use model_core::observer::{MAPPED, Observer, Samples};
+use model_core::observer::{MAPPED, Observer, Samples, Source};
 use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
@@ -62,6 +62,20 @@ pub struct Choices {
 struct Compensated<'d> {
     observer: Observer<'d, f32, MAPPED>,
     compensation: Compensation<'d, f32>,
+    state: CompensatedState,
+}
+
+/// State of observer and compensation.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CompensatedState {
+    /// Encoders that the observer uses.
+    pub source: Source,
+    /// Estimated half-backlash [m].
+    pub half_backlash: f32,
+    /// Stage of the compensation.
+    pub stage: Stage,
+    /// True while plain control acts because the loop hunted.
+    pub is_stepped_back: bool,
 }
 
 /// Joint in motion.
@@ -147,6 +161,7 @@ impl Prepared {
             compensated: designed.as_ref().map(|designed| Compensated {
                 observer: Observer::new(&designed.observer),
                 compensation: Compensation::new(&designed.compensation),
+                state: CompensatedState::default(),
             }),
             output_zero: case.zeros.counts(turns.map(u64::cast_signed))[1] as f64 / turns[1] as f64,
             seed: choices.seed,
@@ -218,15 +233,18 @@ impl Joint<'_> {
     /// Torque of the motor for this period [N m].
     fn drive_step(&mut self, sensors: &Sensors, samples: &Samples) -> f32 {
         let Self { drive, compensated, .. } = self;
-        let Some(Compensated { observer, compensation }) = compensated else { return drive.step(sensors, None) };
+        let Some(Compensated { observer, compensation, state }) = compensated else { return drive.step(sensors, None) };
         let estimates = *observer.step(samples);
+        (state.source, state.half_backlash) = (estimates.source, estimates.half_backlash.value);
         if drive.set_point().is_none() {
             compensation.restart();
         }
         let (origin, ratio) = (drive.origin(), drive.settings().ratio.to_f32());
         let mut follow = |set_point: &SetPoint, _: &Feedback| {
             let command = mapping::command(set_point, Turns::ZERO.minus(origin))?;
-            Some(compensation.step(&estimates, &command).torque * ratio)
+            let output = compensation.step(&estimates, &command);
+            (state.stage, state.is_stepped_back) = (output.stage, output.stepped_back);
+            Some(output.torque * ratio)
         };
         drive.step(sensors, Some(&mut follow))
     }
@@ -239,6 +257,11 @@ impl Joint<'_> {
     /// Control period [s].
     pub fn period(&self) -> f64 {
         self.rig.period()
+    }
+
+    /// State of observer and compensation, if they act in the drive.
+    pub fn compensated(&self) -> Option<CompensatedState> {
+        self.compensated.as_ref().map(|compensated| compensated.state)
     }
 
     /// Seed of faults that are injected while the joint runs.

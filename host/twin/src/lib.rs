@@ -1,16 +1,19 @@
 //! `joint twin`: joints behind drives on a bus of this machine. Clients written for finished drives connect to a
 //! pseudo-terminal or to a TCP port and command the joints as if they were real.
 //!
-//! `joint` is one joint with its drive; `bus` is all of them with the frames between them; `wire` is the form of the
-//! frames on a line; `endpoint` is the line; `clock` paces the simulation; `control` changes joints while they run;
+//! `joint` is one joint with its drive; `bus` is all of them with the frames between them; `can` is the arbitration and
+//! the errors of a CAN bus; `wire` is the form of the frames on a line; `endpoint` is the line; `clock` paces the simulation; `control` changes joints while they run;
 //! `log` records; `session` combines them.
 
 mod arguments;
 mod bus;
+mod bus_report;
+mod can;
 mod clock;
 mod control;
 mod endpoint;
 mod event;
+mod gate;
 mod joint;
 mod log;
 mod mapping;

@@ -13,10 +13,13 @@ use scenario::rig::RunError;
 
 use crate::arguments::Arguments;
 use crate::bus::Bus;
+use crate::bus_report::BusReport;
+use crate::can::Rate;
 use crate::clock::Clock;
 use crate::control::{self, Socket};
 use crate::endpoint::{Client, Endpoint};
 use crate::event::{ClientId, Event};
+use crate::gate::Gate;
 use crate::joint::{Choices, Joint, Prepared};
 use crate::log::TwinLog;
 use crate::protocol::DriveName;
@@ -25,6 +28,11 @@ use crate::wire::{Packet, WireName};
 
 /// Longest wait for an event, so that Ctrl-C is heard.
 const MAX_WAIT: Duration = Duration::from_millis(20);
+
+/// Longest time for which the joints wait in lockstep until the bus is silent [s]. A bus that its drives fill never is.
+const MAX_BUS_TIME: f64 = 0.02;
+/// Frames of clients that wait for the bus before the clients have to wait.
+const MAX_WAITING: usize = 256;
 
 /// Runs the twin until its time is over or the user ends it.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
@@ -47,17 +55,20 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         .collect::<Outcome<Vec<_>>>()?;
     let started = prepared.iter().map(|joint| joint.start(&choices)).collect::<Outcome<Vec<_>>>()?;
     check_rates(&started)?;
-    let bus = Bus::new(started);
+    let rate = arguments.bitrate.map(|nominal| Rate { nominal, ..Rate::USUAL });
+    let bus = Bus::new(started, rate, arguments.seed);
     progress.clear();
     let _orderly = UninterruptedWork::begin();
     let (sender, events) = channel();
-    let (endpoint, client) = Endpoint::open(wire, arguments.port, arguments.link.as_deref(), &sender)?;
+    let gate = Gate::default();
+    let (endpoint, client) = Endpoint::open(wire, arguments.port, arguments.link.as_deref(), &sender, &gate)?;
     let _control = arguments.control.as_ref().map(|path| Socket::listen(path, &sender)).transpose()?;
     let log = arguments.log.as_ref().map(|path| TwinLog::begin(path, &bus.joints, remarks(arguments))).transpose()?;
     announce(arguments, wire, &endpoint.name, &bus)?;
     let session = Session {
         bus,
         wire,
+        gate,
         clients: client.into_iter().collect(),
         log,
         duration: arguments.duration.unwrap_or(f64::INFINITY),
@@ -83,6 +94,14 @@ fn wire_of(arguments: &Arguments) -> Outcome<WireName> {
             false => ("a CAN bus", "write --wire slcan, fdcanusb or socketcand"),
         };
         return Err(Failure::new(format!("`{}` is on {bus}", arguments.drive.word())).with_help(help));
+    }
+    if wire == WireName::Serial && arguments.bitrate.is_some() {
+        return Err(Failure::new("--bitrate is that of a CAN bus, and a serial bus has none")
+            .with_help("leave --bitrate out: bytes of a serial bus take no time"));
+    }
+    if wire == WireName::Serial && arguments.same_id {
+        return Err(Failure::new("--same-id lets frames of a CAN bus collide, and a serial bus has none")
+            .with_help("leave --same-id out"));
     }
     if wire == WireName::Socketcand && arguments.drive == DriveName::Moteus {
         return Err(
@@ -111,9 +130,10 @@ fn joints(arguments: &Arguments) -> Outcome<Vec<(u8, String)>> {
             return Err(Failure::new(format!("--id {assignment}: this names no joint"))
                 .with_help(format!("write ID=FILE with an identifier from 1 to {most}, such as --id 1=q1")));
         };
-        if joints.iter().any(|(known, _)| *known == id) {
-            return Err(Failure::new(format!("--id {assignment}: the identifier {id} is taken"))
-                .with_help("give each joint an identifier of its own"));
+        if !arguments.same_id && joints.iter().any(|(known, _)| *known == id) {
+            return Err(Failure::new(format!("--id {assignment}: the identifier {id} is taken")).with_help(
+                "give each joint an identifier of its own, or write --same-id to see their frames collide",
+            ));
         }
         joints.push((id, file));
     }
@@ -174,6 +194,7 @@ fn describe(joint: &Joint<'_>) -> String {
 struct Session<'d> {
     bus: Bus<'d>,
     wire: WireName,
+    gate: Gate,
     clients: Vec<Client>,
     log: Option<TwinLog>,
     /// Simulated time of the run [s].
@@ -220,7 +241,14 @@ impl Session<'_> {
                         while self.time() + tolerance < target {
                             self.period()?;
                         }
+                        // The answer takes its time on the bus as well.
+                        let latest = target + MAX_BUS_TIME;
+                        while self.bus.is_busy() && self.time() < latest {
+                            self.period()?;
+                            target = target.max(self.time());
+                        }
                     }
+                    self.gate.handled(bytes.len());
                 }
                 Ok(event) => drop(self.handle(event)?),
                 Err(RecvTimeoutError::Timeout) => self.clients.iter_mut().for_each(Client::flush),
@@ -235,15 +263,21 @@ impl Session<'_> {
     }
 
     fn time(&self) -> f64 {
-        self.bus.joints.first().map_or(0.0, |joint| joint.time())
+        self.bus.time()
     }
 
     fn period(&mut self) -> Outcome<()> {
+        self.let_clients_send();
         let packets = self.bus.period().map_err(broken)?;
         if let Some(log) = &mut self.log {
             log.sample(&self.bus.joints)?;
         }
         self.send(&packets)
+    }
+
+    /// Lets the clients send more frames, unless too many of theirs wait for the bus.
+    fn let_clients_send(&self) {
+        self.gate.set(self.bus.client_backlog() < MAX_WAITING);
     }
 
     fn handle(&mut self, event: Event) -> Outcome<()> {
@@ -252,6 +286,8 @@ impl Session<'_> {
                 for (packet, _) in self.packets(client, &bytes) {
                     self.deliver(packet)?;
                 }
+                self.gate.handled(bytes.len());
+                self.let_clients_send();
             }
             Event::Connected(id, stream) => self.clients.push(Client::connected(id, self.wire, stream)),
             Event::Left(id) => {
@@ -263,7 +299,7 @@ impl Session<'_> {
             }
             Event::Control(line, answer) => {
                 // A client of the socket that left does not wait for its answer.
-                let _ = answer.send(control::execute(&line, &mut self.bus.joints));
+                let _ = answer.send(control::execute(&line, &mut self.bus));
             }
         }
         Ok(())
@@ -302,7 +338,9 @@ impl Session<'_> {
             log.finish()?;
         }
         let sum = |of: fn(&Client) -> u64| self.clients.iter().map(of).sum::<u64>();
+        let bus = BusReport::new(&self.bus);
         Ok(Summary {
+            bus,
             schema: "joint-twin/1",
             time_s,
             elapsed_s: self.started.elapsed().as_secs_f64(),

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::bus_report::BusReport;
 use crate::clock::Lateness;
 
 /// Figures of a run.
@@ -21,6 +22,8 @@ pub struct Summary {
     pub dropped: u64,
     /// Lines and frames that made no sense.
     pub malformed: u64,
+    /// Figures of a CAN bus.
+    pub bus: Option<BusReport>,
     /// Lateness of the periods; `None` in lockstep.
     pub lateness: Option<Lateness>,
 }
@@ -39,6 +42,7 @@ impl Summary {
             text += &format!(", {malformed} malformed");
         }
         text.push('\n');
+        text += &self.bus.as_ref().map_or_else(String::new, BusReport::text);
         if let Some(late) = &self.lateness {
             text += &format!(
                 "lateness: median {:.0} us, 99 % below {:.0} us, worst {:.1} ms\n",

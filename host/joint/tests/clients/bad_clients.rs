@@ -14,7 +14,7 @@ const MOTEUS_ANSWER: &str = "rcv 100 ";
 const MOTEUS_MODE: &str = "can send 8001 1100 BF";
 
 /// Number in a line of the summary such as `7 malformed`.
-fn count(summary: &str, words: &str) -> u64 {
+pub fn count(summary: &str, words: &str) -> u64 {
     let before = summary.split(words).next().filter(|before| before.len() < summary.len());
     let number = before.and_then(|before| before.split_whitespace().last()).and_then(|word| word.parse().ok());
     number.unwrap_or_else(|| panic!("no number of `{words}` in {summary}"))
@@ -59,7 +59,7 @@ fn feetech_wrong_checksum_gets_no_answer() {
     // Ping of servo 1: length, instruction, complement of the sum.
     const PING: [u8; 6] = [0xFF, 0xFF, 1, 2, 1, 0xFB];
     const ANSWER: [u8; 5] = [0xFF, 0xFF, 1, 2, 0];
-    let twin = Twin::start("feetech", &["--supply", "12"]);
+    let twin = Twin::start("feetech", &[]);
     let mut line = Line::terminal(twin.port());
     line.send(&[0xFF, 0xFF, 1, 2, 1, 0xFA]);
     // Half a packet, which the next one must not complete.

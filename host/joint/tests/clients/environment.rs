@@ -12,7 +12,7 @@ use crate::command::{folder, text};
 const MAX_RUN: Duration = Duration::from_secs(300);
 /// Remedy for a machine on which an environment cannot be made.
 const NEEDS: &str =
-    "the tests of clients need Python 3.10 or later with `venv`, and pip access to PyPI for 10 MB of packages";
+    "the tests of clients need Python 3.10 or later with `venv`, and pip access to the Python package index for 10 MB";
 
 /// Python with the packages of a client.
 pub struct Environment(PathBuf);
@@ -54,10 +54,17 @@ impl Environment {
 
     /// Runs a script of this folder to its end, which must be success within `MAX_RUN`; returns what it printed.
     pub fn run(&self, script: &str, arguments: &[&str]) -> String {
+        let (is_success, printed) = self.output(&scripts().join(script), arguments);
+        assert!(is_success, "{script} failed:\n{printed}");
+        printed
+    }
+
+    /// Runs a script to its end within `MAX_RUN`; returns true for success, and what it printed.
+    pub fn output(&self, script: &Path, arguments: &[&str]) -> (bool, String) {
         let place = folder();
         let output = File::create(place.path().join("output")).expect("a file");
         let mut command = Command::new(&self.0);
-        command.arg(scripts().join(script)).args(arguments).env("PYTHONDONTWRITEBYTECODE", "1").stdin(Stdio::null());
+        command.arg(script).args(arguments).env("PYTHONDONTWRITEBYTECODE", "1").stdin(Stdio::null());
         command.stdout(output.try_clone().expect("a second handle")).stderr(output);
         let mut child = command.spawn().expect("the environment has an interpreter");
         let begin = Instant::now();
@@ -71,9 +78,8 @@ impl Environment {
             thread::sleep(Duration::from_millis(10));
         };
         let printed = fs::read_to_string(place.path().join("output")).expect("text");
-        assert!(begin.elapsed() < MAX_RUN, "{script} was ended after {MAX_RUN:?}:\n{printed}");
-        assert!(status.success(), "{script} failed:\n{printed}");
-        printed
+        assert!(begin.elapsed() < MAX_RUN, "{} was ended after {MAX_RUN:?}:\n{printed}", script.display());
+        (status.success(), printed)
     }
 }
 

@@ -3,12 +3,15 @@
 //! Each script beside this file connects, enables, moves by 0.1 turns, reads both encoders, lets the watchdog expire,
 //! causes faults, clears them and disables. Its packages are pinned in the `.txt` file of its name.
 
+mod bad_bus;
 mod bad_clients;
 #[path = "../command/mod.rs"]
 mod command;
 mod environment;
+mod five_minutes;
 mod line;
 mod lost_motion;
+mod round_trips;
 mod twin;
 
 use environment::Environment;
@@ -22,17 +25,6 @@ fn passes(client: &str, drive: &str, twin_arguments: &[&str], words: &[&str]) {
     environment.run(&format!("{client}_client.py"), &[&[twin.port(), twin.control()], words].concat());
     let summary = twin.end();
     assert!(!summary.contains("malformed"), "{summary}");
-}
-
-/// As [`passes`] with a link of 0.5 N m: at the supply of a small drive its current limit does not hold the weight of
-/// Q1's link.
-fn passes_with_a_light_link(client: &str, drive: &str, words: &[&str]) {
-    let place = command::folder();
-    let file = place.path().join("light.toml");
-    let q1 = joint_file::preset("q1").expect("a preset");
-    let light = joint_file::change(q1, "drive_train.gravity_torque_N_m", "0.5").expect("a key");
-    std::fs::write(&file, light).expect("written");
-    passes(client, drive, &[command::text(&file)], words);
 }
 
 #[test]
@@ -62,7 +54,7 @@ fn damiao_client_passes() {
 
 #[test]
 fn cybergear_client_passes() {
-    passes_with_a_light_link("cybergear", "cybergear", &["cybergear"]);
+    passes("cybergear", "cybergear", &[], &["cybergear"]);
 }
 
 #[test]
@@ -72,7 +64,19 @@ fn cybergear_client_on_a_robstride_passes() {
 
 #[test]
 fn feetech_client_passes() {
-    passes_with_a_light_link("feetech", "feetech", &[]);
+    passes("feetech", "feetech", &[], &[]);
+}
+
+#[test]
+#[ignore = "installs 110 MB: cargo test -p joint --test clients lerobot -- --ignored"]
+fn lerobot_bus_on_a_damiao_passes() {
+    passes("lerobot", "damiao", &[], &["damiao", "dm6006"]);
+}
+
+#[test]
+#[ignore = "installs 110 MB: cargo test -p joint --test clients lerobot -- --ignored"]
+fn lerobot_bus_on_a_feetech_passes() {
+    passes("lerobot", "feetech", &[], &["feetech"]);
 }
 
 #[test]

@@ -23,10 +23,15 @@ pub struct Twin {
 impl Twin {
     /// Starts a twin for at most 120 s of the joint's time and waits until clients can connect.
     pub fn start(drive: &str, arguments: &[&str]) -> Self {
+        Self::endless(drive, &[&["--for", "120"], arguments].concat())
+    }
+
+    /// Starts a twin that ends when it is told to, and waits until clients can connect.
+    pub fn endless(drive: &str, arguments: &[&str]) -> Self {
         let place = folder();
         let [link, control] = ["port", "control"].map(|name| text(&place.path().join(name)).to_owned());
         let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
-        command.args(["twin", "--drive", drive, "--for", "120", "--control", &control]).args(arguments);
+        command.args(["twin", "--drive", drive, "--control", &control]).args(arguments);
         if !arguments.contains(&"socketcand") {
             command.args(["--link", &link]);
         }

@@ -14,10 +14,7 @@
 use drives::Frame;
 use drives::frame::{Id, Kind, extended, flexible_length, standard};
 
-use super::{Lines, Packet, Received, Wire, hex, is_line_end};
-
-/// Data lengths by DLC.
-const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
+use super::{LENGTHS, Lines, Packet, Received, Wire, hex, is_line_end, length_code};
 
 /// State of an adapter.
 #[derive(Debug, Default)]
@@ -75,7 +72,7 @@ fn encode(frame: &Frame) -> String {
         (Kind::Flexible(true), false) => 'b',
         (Kind::Flexible(true), true) => 'B',
     };
-    let dlc = LENGTHS.iter().position(|length| *length >= frame.length()).unwrap_or(0xF);
+    let dlc = length_code(frame.length());
     let width = if is_extended { 8 } else { 3 };
     format!("{letter}{:0width$X}{dlc:X}{}\r", frame.raw_id(), hex::digits(frame.data()))
 }

@@ -93,3 +93,45 @@ fn serial_bytes_are_cut_at_packets() {
     assert_eq!(line.receive(&two), [whole.clone(), whole, Received::Part(ping[..3].into())]);
     assert_eq!(line.receive(&ping[3..]), [Received::Packet(Packet::Bytes(ping[3..].into()))]);
 }
+
+/// Frames as a client writes them, with some bytes changed, dropped or repeated.
+#[test]
+fn wires_survive_a_storm() {
+    const LINES: [&str; 9] = [
+        "t0218DEADBEEF00112233\r",
+        "T0300FD01800000000000000FF\r",
+        "b80010123456789ABCDEF\r",
+        "r0298\rO\rV\r",
+        "can send 8001 01000A0E200000C07FCDCC4C3E BF *5A\n",
+        "can std 100 1100 r\ncan ext 1FFFFFFF bF t5\n",
+        "< send 020 8 0 0 0 0 0 0 0 0 >",
+        "< open can0 >< rawmode >< send 12345678 1 FF >",
+        "\u{ff}\u{ff}\u{1}\u{4}\u{2}\u{38}\u{2}\u{be}",
+    ];
+    let count: u64 = std::env::var("STORM_FRAMES").map_or(40_000, |count| count.parse().expect("a number of lines"));
+    let mut random = scenario::random::RandomStream::new(1, "lines");
+    for name in [WireName::Slcan, WireName::Fdcanusb, WireName::Socketcand, WireName::Serial] {
+        let (mut wire, mut packets) = (wire(name), 0_u64);
+        for _ in 0..count / 4 {
+            let line = LINES[random.word() as usize % LINES.len()];
+            let mut bytes: Vec<u8> = line.chars().map(|letter| letter as u8).collect();
+            for _ in 0..random.word() % 3 {
+                let at = random.word() as usize % bytes.len();
+                match random.word() % 4 {
+                    0 => bytes[at] = random.word() as u8,
+                    1 => drop(bytes.remove(at)),
+                    2 => bytes.insert(at, bytes[at]),
+                    _ => bytes.truncate(at + 1),
+                }
+            }
+            for received in wire.receive(&bytes) {
+                if let Received::Packet(packet) = received {
+                    packets += 1;
+                    let _ = wire.encode(&packet);
+                }
+            }
+        }
+        println!("{name:?}: {} lines, {packets} packets", count / 4);
+        assert!(packets > count / 400, "{name:?}: {packets}");
+    }
+}

@@ -1,7 +1,8 @@
 //! One run of a test file: a case on the rig under a controller, for the test's duration.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use live::{Feed, Live};
 use model_core::compensation::CompensationTables;
 use model_core::compensation::design::design_compensation;
 use model_core::observer::design::observer_settings;
@@ -9,6 +10,7 @@ use model_core::observer::design::observer_settings;
 use super::case::{Case, Designed};
 use super::controller::ControllerName;
 use super::file::TestFile;
+use super::live_view::{description, period_sample};
 use super::plant::{PlantName, half_backlash};
 use super::port::{ControllerPort, HostPort, Translator};
 use super::random::RandomStream;
@@ -31,6 +33,43 @@ pub struct RunSpec {
     pub without_gap: bool,
 }
 
+/// Limit of a run on the clock, and the live view that it may show itself in.
+#[derive(Clone, Copy)]
+pub struct Watch<'l> {
+    deadline: Instant,
+    live: Option<&'l Live>,
+    name: Option<&'l str>,
+}
+
+impl<'l> Watch<'l> {
+    /// Watch without a live view.
+    pub fn until(deadline: Instant) -> Self {
+        Self { deadline, live: None, name: None }
+    }
+
+    /// Watch beside a live view, without showing the run.
+    #[must_use]
+    pub fn beside(self, live: Option<&'l Live>) -> Self {
+        Self { live, ..self }
+    }
+
+    /// Shows the run under a name, unless another run shows itself.
+    #[must_use]
+    pub fn named(self, name: Option<&'l str>) -> Self {
+        Self { name, ..self }
+    }
+
+    /// True after the deadline; time that the runs have waited for the live view does not count.
+    fn is_over(&self) -> bool {
+        let waited = self.live.map_or(Duration::ZERO, Live::waited);
+        Instant::now().checked_sub(waited).is_some_and(|now| now > self.deadline)
+    }
+
+    fn claim(&self, case: &Case) -> Option<Feed> {
+        self.live?.claim(description(1, self.name?, &case.truth.parameters))
+    }
+}
+
 /// Share of the runs that start on a flank [-]; the others start in the open gap.
 const ON_FLANK_SHARE: f64 = 0.33;
 
@@ -48,7 +87,18 @@ pub fn execute(
     spec: RunSpec,
     deadline: Instant,
 ) -> Result<RunHistory, RunError> {
-    execute_with(file, case, seed, spec, deadline, &host_port)
+    execute_with(file, case, seed, spec, Watch::until(deadline), &host_port)
+}
+
+/// Runs one controller in one case on the host under a watch.
+pub fn execute_watched(
+    file: &TestFile,
+    case: &Case,
+    seed: u64,
+    spec: RunSpec,
+    watch: Watch<'_>,
+) -> Result<RunHistory, RunError> {
+    execute_with(file, case, seed, spec, watch, &host_port)
 }
 
 /// Runs a compensation in one case on the host with given tables; cases that differ only in seed or true joint can
@@ -61,7 +111,7 @@ pub fn execute_designed(
     deadline: Instant,
     designed: &Designed,
 ) -> Result<RunHistory, RunError> {
-    run(file, case, seed, spec, deadline, Some(designed), &host_port)
+    run(file, case, seed, spec, Watch::until(deadline), Some(designed), &host_port)
 }
 
 /// Port to observer and compensation in this process.
@@ -75,11 +125,11 @@ pub fn execute_with(
     case: &Case,
     seed: u64,
     spec: RunSpec,
-    deadline: Instant,
+    watch: Watch<'_>,
     port: MakePort<'_>,
 ) -> Result<RunHistory, RunError> {
     let designed = if spec.controller.is_compensation() { Some(case.design(file)?) } else { None };
-    run(file, case, seed, spec, deadline, designed.as_ref(), port)
+    run(file, case, seed, spec, watch, designed.as_ref(), port)
 }
 
 fn run(
@@ -87,7 +137,7 @@ fn run(
     case: &Case,
     seed: u64,
     spec: RunSpec,
-    deadline: Instant,
+    watch: Watch<'_>,
     designed: Option<&Designed>,
     port: MakePort<'_>,
 ) -> Result<RunHistory, RunError> {
@@ -101,7 +151,7 @@ fn run(
         }
         (None, None) => ActiveController::rival(spec.controller, case.knowledge(), case.bandwidth(file)?),
     };
-    let run = RunContext { file, case, spec, designed, deadline };
+    let run = RunContext { file, case, spec, designed, watch };
     if file.from_memory && spec.controller.is_compensation() {
         // The first run has other noise, so that the memory holds the joint and not the noise.
         run.execute(&mut controller, !seed)?;
@@ -139,25 +189,29 @@ struct RunContext<'r> {
     case: &'r Case,
     spec: RunSpec,
     designed: Option<&'r Designed>,
-    deadline: Instant,
+    watch: Watch<'r>,
 }
 
 impl RunContext<'_> {
     fn execute(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
-        let Self { file, case, spec, designed, deadline } = *self;
+        let Self { file, case, spec, designed, watch } = *self;
         let rig = Rig::new(&setup(file, case, seed, spec))?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
         let mut history = RunHistory::begin(rig.period(), rig.periods());
         // The compensation has a translator of its own; this one logs the readings as they arrive.
         let mut translator = translator(case);
+        let mut feed = watch.claim(case);
         rig.run(controller, &mut set_points, &mut |period| {
-            if period.index % PERIODS_BETWEEN_CHECKS == 0 && Instant::now() > deadline {
+            if period.index % PERIODS_BETWEEN_CHECKS == 0 && watch.is_over() {
                 return Err(RunError::TimedOut);
             }
             if interruption::requested() {
                 return Err(RunError::Interrupted);
             }
             history.add_period(period, &mut translator);
+            if let Some(feed) = &mut feed {
+                feed.publish(period.plant.joint().time, || period_sample(period));
+            }
             Ok(())
         })?;
         history.memory = controller.memory();

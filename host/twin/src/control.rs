@@ -9,6 +9,8 @@
 //! | `motor_temperature_C` | number | temperature of the winding |
 //! | `fault` | object | fault with the keys of `[[fault]]` in test files; times count from now |
 //! | `end_faults` | `true` | ends all faults |
+//! | `mode` | object | mode of the drive in place of its client's commands |
+//! | `clear_fault` | `true` | clears the fault of the drive |
 //! | `status` | `true` | state of the joints |
 
 use std::fmt::Write as _;
@@ -27,6 +29,7 @@ use serde_json::{Map, Value};
 
 use crate::event::Event;
 use crate::joint::Joint;
+use crate::mode::Mode;
 
 /// Command of one line.
 #[derive(Debug, Default, Deserialize)]
@@ -44,6 +47,9 @@ pub struct Order {
     fault: Option<Map<String, Value>>,
     #[serde(default)]
     end_faults: bool,
+    mode: Option<Mode>,
+    #[serde(default)]
+    clear_fault: bool,
     #[serde(default)]
     status: bool,
 }
@@ -76,6 +82,7 @@ pub struct Status {
     name: String,
     state: String,
     fault: Option<String>,
+    mode: &'static str,
     position_turns: f32,
     output_turns: Option<f32>,
     link_rad: f64,
@@ -130,15 +137,18 @@ fn remove_stale_socket(path: &Path) {
 fn serve(stream: &UnixStream, events: &Sender<Event>) {
     let Ok(mut writer) = stream.try_clone() else { return };
     for line in BufReader::new(stream).lines().map_while(Result::ok) {
-        let (answer, answered) = channel();
-        if events.send(Event::Control(line, answer)).is_err() {
-            return;
-        }
-        let Ok(text) = answered.recv() else { return };
+        let Some(text) = ask(line, events) else { return };
         if writeln!(writer, "{text}").is_err() {
             return;
         }
     }
+}
+
+/// Hands a line to the run; returns the answer as JSON, or `None` once the run is over.
+pub fn ask(line: String, events: &Sender<Event>) -> Option<String> {
+    let (answer, answered) = channel();
+    events.send(Event::Control(line, answer)).ok()?;
+    answered.recv().ok()
 }
 
 /// Carries out a line; returns the answer as JSON.
@@ -158,14 +168,15 @@ fn refused(error: impl Into<String>, help: impl Into<String>) -> Reply {
 fn read(line: &str, joints: &[Joint<'_>]) -> Result<(Order, Vec<Fault>), Reply> {
     let order: Order = serde_json::from_str(line)
         .map_err(|error| refused(error.to_string(), "write one JSON object a line: docs/reference/twin.md"))?;
-    let numbers = [
+    let own = [
         ("load_N_m", order.load, -1e6, 1e6),
         ("half_backlash_um", order.half_backlash, 0.0, 1e4),
         ("supply_V", order.supply.map(f64::from), 0.0, 200.0),
         ("motor_temperature_C", order.motor_temperature.map(f64::from), -50.0, 500.0),
     ];
-    for (key, value, low, high) in numbers {
-        if value.is_some_and(|value| !(low..=high).contains(&value)) {
+    let own = own.into_iter().filter_map(|(key, value, low, high)| Some((key, value?, low, high)));
+    for (key, value, low, high) in own.chain(order.mode.map(Mode::numbers).unwrap_or_default()) {
+        if !(low..=high).contains(&value) {
             return Err(refused(format!("`{key}` is out of range"), format!("write a number from {low} to {high}")));
         }
     }
@@ -222,6 +233,12 @@ fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
         for fault in faults {
             joint.rig().inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
         }
+        if order.clear_fault {
+            joint.drive.clear_fault();
+        }
+        if let Some(mode) = order.mode {
+            joint.set_mode(mode);
+        }
         if order.status {
             states.push(status(joint));
         }
@@ -236,6 +253,7 @@ fn status(joint: &Joint<'_>) -> Status {
         name: joint.name.clone(),
         state: format!("{:?}", joint.drive.state()),
         fault: joint.drive.fault().map(|fault| format!("{fault:?}")),
+        mode: joint.mode(),
         position_turns: feedback.position.to_f32(),
         output_turns: feedback.output_position.map(|position| position.to_f32()),
         link_rad: truth.link,

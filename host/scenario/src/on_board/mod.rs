@@ -16,6 +16,7 @@ mod twin;
 
 use joint_file::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
+use live::Live;
 use model_core::controller::design::{NominalPlant, control_source};
 pub use request::BoardRequest;
 use request::{check_request, check_test};
@@ -132,12 +133,20 @@ impl<'w> Boards<'w> {
         }
     }
 
-    /// Runs a case on a board and on the host; fails if the runs differ in any bit.
-    pub fn run(&self, test: &Test, case: &Case, seed: u64, spec: RunSpec) -> Result<(RunHistory, BoardRun), RunError> {
+    /// Runs a case on a board and on the host; fails if the runs differ in any bit. The role `observer`, whose plant is
+    /// on the host, shows itself in a live view under a name.
+    pub fn run(
+        &self,
+        test: &Test,
+        case: &Case,
+        seed: u64,
+        spec: RunSpec,
+        shown: (Option<&Live>, &str),
+    ) -> Result<(RunHistory, BoardRun), RunError> {
         let pair = self.pair(test, case)?;
         match self.request.role {
             Role::Loop => self.run_loop(test, case, seed, &pair),
-            Role::Observer | Role::Plant => self.run_observer(test, case, seed, spec, &pair),
+            Role::Observer | Role::Plant => self.run_observer(test, case, seed, spec, &pair, shown),
         }
     }
 

@@ -10,12 +10,13 @@ use super::port::BoardPort;
 use super::twin::{Twin, TwinResult};
 use super::{Boards, RunJoints};
 use crate::case::Case;
-use crate::execution::{RunSpec, execute_with};
+use crate::execution::{RunSpec, Watch, execute_with};
 use crate::record::BoardRun;
 use crate::rig::RunError;
 use crate::run_history::RunHistory;
 use crate::suite::Test;
 use board::session::Session;
+use live::Live;
 use report::failure::Failure;
 
 /// Limit of a run on a board in lockstep, independent of the test's time on the clock.
@@ -29,10 +30,12 @@ impl Boards<'_> {
         seed: u64,
         spec: RunSpec,
         pair: &RunJoints,
+        (live, name): (Option<&Live>, &str),
     ) -> Result<(RunHistory, BoardRun), RunError> {
         let (session, image) = self.session(pair)?;
         let session = Rc::new(RefCell::new(session));
-        let history = execute_with(&test.file, case, seed, spec, Instant::now() + RUN_TIMEOUT, &|designed| {
+        let watch = Watch::until(Instant::now() + RUN_TIMEOUT).beside(live).named(Some(name));
+        let history = execute_with(&test.file, case, seed, spec, watch, &|designed| {
             Ok(Box::new(BoardPort::new(session.clone(), designed)))
         });
         let mut session = session.borrow_mut();

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 /// Mode by command.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(try_from = "Keys")]
 pub enum Mode {
     /// The client commands.
     Client,
@@ -31,7 +31,6 @@ pub enum Mode {
     /// A torque at the output [N m].
     Torque {
         /// Torque [N m].
-        #[serde(rename = "torque_N_m")]
         torque: f64,
     },
     /// A sine about the present angle.
@@ -49,6 +48,47 @@ pub struct ActiveMode {
     mode: Mode,
     start: f64,
     origin: Turns,
+}
+
+/// Keys of a mode. Without an enum with a tag, which does not read numbers of arbitrary precision.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    kind: String,
+    turns: Option<f64>,
+    turns_per_s: Option<f64>,
+    #[serde(rename = "torque_N_m")]
+    torque: Option<f64>,
+    period_s: Option<f64>,
+}
+
+impl TryFrom<Keys> for Mode {
+    type Error = String;
+
+    fn try_from(mut keys: Keys) -> Result<Self, String> {
+        let kind = std::mem::take(&mut keys.kind);
+        let needed = |key: &str, value: &mut Option<f64>| {
+            value.take().ok_or_else(|| format!("the mode `{kind}` needs a number `{key}`"))
+        };
+        let mode = match kind.as_str() {
+            "client" => Self::Client,
+            "off" => Self::Off,
+            "brake" => Self::Brake,
+            "hold" => Self::Hold,
+            "position" => Self::Position { turns: needed("turns", &mut keys.turns)? },
+            "velocity" => Self::Velocity { turns_per_s: needed("turns_per_s", &mut keys.turns_per_s)? },
+            "torque" => Self::Torque { torque: needed("torque_N_m", &mut keys.torque)? },
+            "swing" => Self::Swing {
+                turns: needed("turns", &mut keys.turns)?,
+                period_s: needed("period_s", &mut keys.period_s)?,
+            },
+            _ => return Err(format!("there is no mode `{kind}`")),
+        };
+        match [keys.turns, keys.turns_per_s, keys.torque, keys.period_s].iter().any(Option::is_some) {
+            true => Err(format!("the mode `{kind}` has a number too many")),
+            false => Ok(mode),
+        }
+    }
 }
 
 impl Mode {
@@ -135,7 +175,12 @@ mod tests {
         assert_eq!(read(r#"{"kind":"torque","torque_N_m":2.0}"#), Ok(Mode::Torque { torque: 2.0 }));
         let swing = Mode::Swing { turns: 0.1, period_s: 2.0 };
         assert_eq!(read(r#"{"kind":"swing","turns":0.1,"period_s":2.0}"#), Ok(swing));
-        for bad in [r#"{"kind":"fly"}"#, r#"{"kind":"position"}"#, r#"{"kind":"position","turns":1,"speed":2}"#] {
+        for bad in [
+            r#"{"kind":"fly"}"#,
+            r#"{"kind":"position"}"#,
+            r#"{"kind":"position","turns":1,"speed":2}"#,
+            r#"{"kind":"hold","turns":1}"#,
+        ] {
             assert!(read(bad).is_err(), "{bad}");
         }
     }

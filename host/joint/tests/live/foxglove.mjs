@@ -1,11 +1,12 @@
 // Foxglove's own packages read the live view at URL: server information, channel, schema and a second of messages.
 
-import { FoxgloveClient } from "@foxglove/ws-protocol";
+import protocol from "@foxglove/ws-protocol";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import WebSocket from "ws";
 import assert from "node:assert";
 
+const { FoxgloveClient } = protocol;
 const url = process.argv[2];
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
 client.on("error", (error) => {

@@ -33,17 +33,13 @@ pub struct Foxglove {
 
 /// Request of a viewer.
 #[derive(Deserialize)]
-#[serde(tag = "op", rename_all = "camelCase")]
-enum Request {
-    Subscribe {
-        subscriptions: Vec<Subscription>,
-    },
-    #[serde(rename_all = "camelCase")]
-    Unsubscribe {
-        subscription_ids: Vec<u32>,
-    },
-    #[serde(other)]
-    Other,
+#[serde(rename_all = "camelCase")]
+struct Request {
+    op: String,
+    #[serde(default)]
+    subscriptions: Vec<Subscription>,
+    #[serde(default)]
+    subscription_ids: Vec<u32>,
 }
 
 #[derive(Deserialize)]
@@ -132,25 +128,27 @@ impl View for Foxglove {
     }
 
     fn receive(&mut self, request: &str) -> Vec<Message> {
-        match serde_json::from_str(request) {
-            Ok(Request::Subscribe { subscriptions }) => {
-                for Subscription { id, channel_id } in subscriptions {
+        let request: Request = match serde_json::from_str(request) {
+            Ok(request) => request,
+            Err(error) => {
+                let message = format!("the request is malformed: {error}");
+                return text(&json!({ "op": "status", "level": ERROR, "message": message }));
+            }
+        };
+        match request.op.as_str() {
+            "subscribe" => {
+                for Subscription { id, channel_id } in request.subscriptions {
                     let is_known = self.subscriptions.iter().any(|(known, _)| *known == id);
                     if !is_known && self.subscriptions.len() < MAX_SUBSCRIPTIONS {
                         self.subscriptions.push((id, channel_id));
                     }
                 }
-                Vec::new()
             }
-            Ok(Request::Unsubscribe { subscription_ids }) => {
-                self.subscriptions.retain(|(id, _)| !subscription_ids.contains(id));
-                Vec::new()
-            }
-            Ok(Request::Other) => Vec::new(),
-            Err(error) => text(&json!({
-                "op": "status", "level": ERROR, "message": format!("the request is malformed: {error}")
-            })),
+            "unsubscribe" => self.subscriptions.retain(|(id, _)| !request.subscription_ids.contains(id)),
+            // The server offers nothing else.
+            _ => {}
         }
+        Vec::new()
     }
 
     fn end(&mut self) -> Vec<Message> {

@@ -245,7 +245,7 @@ impl Joint<'_> {
     /// Commands the drive in place of its client from now on, or gives it back.
     pub fn set_mode(&mut self, mode: Mode) {
         let now = self.time();
-        self.mode = mode.start(&mut self.drive, now);
+        self.mode = mode.start(&mut self.drive, now, self.mode);
     }
 
     /// Word of the mode.

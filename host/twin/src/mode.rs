@@ -117,12 +117,22 @@ impl Mode {
         }
     }
 
-    /// Mode that takes effect at a time [s]; `None` gives the drive back to its client.
-    pub fn start(self, drive: &mut Drive, time: f64) -> Option<ActiveMode> {
-        // A client has to enable the drive again; its last set-point could be far away by now.
-        drive.disable();
-        let active = ActiveMode { mode: self, start: time, origin: drive.feedback().position };
-        (self != Self::Client).then_some(active)
+    /// Mode that takes effect at a time [s] after another one; `None` gives the drive back to its client.
+    pub fn start(self, drive: &mut Drive, time: f64, before: Option<ActiveMode>) -> Option<ActiveMode> {
+        let now = ActiveMode { mode: self, start: time, origin: drive.feedback().position };
+        match (self, before.map(|before| (before, before.mode))) {
+            (Self::Client, _) => {
+                // A client has to enable the drive again; its last set-point could be far away by now.
+                drive.disable();
+                None
+            }
+            // A swing goes on about its centre, from its present phase.
+            (Self::Swing { period_s, .. }, Some((before, Self::Swing { period_s: old, .. }))) => {
+                let start = time - (time - before.start) * period_s / old;
+                Some(ActiveMode { mode: self, start, origin: before.origin })
+            }
+            _ => Some(now),
+        }
     }
 }
 
@@ -190,22 +200,26 @@ mod tests {
         let mut drive = Drive::new(Settings { watchdog: Some(0.01), ..Settings::default() });
         let sensors = Sensors { motor_counts: Some(100), output_counts: Some(50), ..Sensors::default() };
         drive.step(&sensors, None);
-        let active = Mode::Hold.start(&mut drive, 0.0).expect("a mode");
+        let active = Mode::Hold.start(&mut drive, 0.0, None).expect("a mode");
         for period in 0..2000 {
             active.command(&mut drive, 1e-3 * f64::from(period));
             drive.step(&sensors, None);
         }
         assert_eq!((drive.state(), drive.fault()), (State::Enabled, None));
-        assert!(Mode::Client.start(&mut drive, 2.0).is_none());
+        assert!(Mode::Client.start(&mut drive, 2.0, Some(active)).is_none());
         assert_eq!(drive.state(), State::Disabled);
     }
 
     #[test]
     fn swing_follows_sine() {
         let mut drive = Drive::new(Settings::default());
-        let active = Mode::Swing { turns: 0.1, period_s: 2.0 }.start(&mut drive, 1.0).expect("a mode");
+        let active = Mode::Swing { turns: 0.1, period_s: 2.0 }.start(&mut drive, 1.0, None).expect("a mode");
         active.command(&mut drive, 1.5);
         let Some(SetPoint::Position(target)) = drive.set_point() else { panic!("a position") };
         assert!((target.position.to_f32() - 0.1).abs() < 1e-6 && target.velocity.abs() < 1e-6, "{target:?}");
+        let slower = Mode::Swing { turns: 0.1, period_s: 8.0 }.start(&mut drive, 1.5, Some(active)).expect("a mode");
+        slower.command(&mut drive, 1.5);
+        let Some(SetPoint::Position(same)) = drive.set_point() else { panic!("a position") };
+        assert!((same.position.to_f32() - 0.1).abs() < 1e-6, "the phase goes on: {same:?}");
     }
 }

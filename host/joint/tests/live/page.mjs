@@ -56,7 +56,7 @@ await text("drive-state", "enabled");
 await until("the teeth cross the gap", () =>
   /crossed in [\d.]+ ms/.test(document.getElementById("crossing-value").dataset.text),
 );
-const rate = Number(/samples ([\d.]+) kHz/.exec(await page.locator("#crossing-value").getAttribute("data-text"))[1]);
+const rate = Number(/sampled at ([\d.]+) kHz/.exec(await page.locator("#crossing-value").getAttribute("data-text"))[1]);
 assert.ok(rate > 4, `a crossing at ${rate} kHz`);
 await page.waitForTimeout(folder ? 5000 : 500);
 await shoot(page, "swing-light");

@@ -79,6 +79,7 @@ await slide("supply", 0);
 await text("drive-fault", "under voltage");
 await shoot(page, "fault-dark");
 await slide("supply", 48);
+await text("drive-bus", "48.0 V");
 await page.click("#clear-fault");
 await text("drive-fault", "none");
 await page.click('#modes button[data-mode="client"]');

@@ -17,6 +17,7 @@ mod thinner;
 mod udp;
 mod view;
 mod viewer;
+mod watch;
 
 pub use feed::Feed;
 pub use options::{LiveOptions, PacedLiveOptions};
@@ -24,3 +25,4 @@ pub use sample::Sample;
 pub use shared::Commands;
 pub use source::Description;
 pub use view::Live;
+pub use watch::Watch;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::controller::ControllerName;
 use super::controller_log::ObserverOrigin;
-use super::execution::{RunSpec, Watch, execute_watched};
+use super::execution::{RunSpec, Watch, execute};
 use super::file::{Aggregate, fault_word};
 use super::log_file::{self, LoggedRun};
 use super::memory_file;
@@ -225,8 +225,8 @@ fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) 
     let name = format!("{}, seed {}", test.name, job.seed);
     let watch = Watch::until(deadline).beside(options.live);
     let history = match options.boards.filter(|_| is_tested) {
-        None => execute_watched(&test.file, &case, job.seed, spec, watch.named(is_tested.then_some(name.as_str()))),
-        Some(boards) => boards.run(test, &case, job.seed, spec, (options.live, &name)).map(|(history, board)| {
+        None => execute(&test.file, &case, job.seed, spec, watch.named(is_tested.then_some(&name))),
+        Some(boards) => boards.run(test, &case, job.seed, spec, watch.named(Some(&name))).map(|(history, board)| {
             run.board = Some(board);
             history
         }),
@@ -234,7 +234,7 @@ fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) 
     let both = history.and_then(|history| {
         let wanted = test.file.gains.is_some() && job.controller.wants_gains();
         let other = RunSpec { controller: job.controller.without_gap(), without_gap: true, ..spec };
-        let without_gap = wanted.then(|| execute_watched(&test.file, &case, job.seed, other, watch)).transpose()?;
+        let without_gap = wanted.then(|| execute(&test.file, &case, job.seed, other, watch)).transpose()?;
         Ok((history, without_gap))
     });
     match both {

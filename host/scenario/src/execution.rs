@@ -1,8 +1,8 @@
 //! One run of a test file: a case on the rig under a controller, for the test's duration.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use live::{Feed, Live};
+pub use live::Watch;
 use model_core::compensation::CompensationTables;
 use model_core::compensation::design::design_compensation;
 use model_core::observer::design::observer_settings;
@@ -10,7 +10,6 @@ use model_core::observer::design::observer_settings;
 use super::case::{Case, Designed};
 use super::controller::ControllerName;
 use super::file::TestFile;
-use super::live_view::{description, period_sample};
 use super::plant::{PlantName, half_backlash};
 use super::port::{ControllerPort, HostPort, Translator};
 use super::random::RandomStream;
@@ -21,6 +20,7 @@ use parameters::JointParameters;
 use reference::joint::{RelativeState, Start};
 use report::failure::{Failure, Outcome};
 use report::interruption;
+use simulation::sim::live_view::description;
 
 /// Controller and plant of a run.
 #[derive(Debug, Clone, Copy)]
@@ -31,43 +31,6 @@ pub struct RunSpec {
     pub plant: PlantName,
     /// Runs without backlash and without faults, as the reference of an impedance's deviation.
     pub without_gap: bool,
-}
-
-/// Limit of a run on the clock, and the live view that it may show itself in.
-#[derive(Clone, Copy)]
-pub struct Watch<'l> {
-    deadline: Instant,
-    live: Option<&'l Live>,
-    name: Option<&'l str>,
-}
-
-impl<'l> Watch<'l> {
-    /// Watch without a live view.
-    pub fn until(deadline: Instant) -> Self {
-        Self { deadline, live: None, name: None }
-    }
-
-    /// Watch beside a live view, without showing the run.
-    #[must_use]
-    pub fn beside(self, live: Option<&'l Live>) -> Self {
-        Self { live, ..self }
-    }
-
-    /// Shows the run under a name, unless another run shows itself.
-    #[must_use]
-    pub fn named(self, name: Option<&'l str>) -> Self {
-        Self { name, ..self }
-    }
-
-    /// True after the deadline; time that the runs have waited for the live view does not count.
-    fn is_over(&self) -> bool {
-        let waited = self.live.map_or(Duration::ZERO, Live::waited);
-        Instant::now().checked_sub(waited).is_some_and(|now| now > self.deadline)
-    }
-
-    fn claim(&self, case: &Case) -> Option<Feed> {
-        self.live?.claim(description(1, self.name?, &case.truth.parameters))
-    }
 }
 
 /// Share of the runs that start on a flank [-]; the others start in the open gap.
@@ -81,17 +44,6 @@ pub type MakePort<'p> = &'p dyn for<'d> Fn(&'d Designed) -> Outcome<Box<dyn Cont
 
 /// Runs one controller in one case on the host.
 pub fn execute(
-    file: &TestFile,
-    case: &Case,
-    seed: u64,
-    spec: RunSpec,
-    deadline: Instant,
-) -> Result<RunHistory, RunError> {
-    execute_with(file, case, seed, spec, Watch::until(deadline), &host_port)
-}
-
-/// Runs one controller in one case on the host under a watch.
-pub fn execute_watched(
     file: &TestFile,
     case: &Case,
     seed: u64,
@@ -200,7 +152,7 @@ impl RunContext<'_> {
         let mut history = RunHistory::begin(rig.period(), rig.periods());
         // The compensation has a translator of its own; this one logs the readings as they arrive.
         let mut translator = translator(case);
-        let mut feed = watch.claim(case);
+        let mut feed = watch.claim(|name| description(1, name, &case.truth.parameters));
         rig.run(controller, &mut set_points, &mut |period| {
             if period.index % PERIODS_BETWEEN_CHECKS == 0 && watch.is_over() {
                 return Err(RunError::TimedOut);
@@ -210,7 +162,7 @@ impl RunContext<'_> {
             }
             history.add_period(period, &mut translator);
             if let Some(feed) = &mut feed {
-                feed.publish(period.plant.joint().time, || period_sample(period));
+                feed.publish(period.plant.joint().time, || period.live_sample());
             }
             Ok(())
         })?;

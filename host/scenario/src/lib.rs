@@ -6,7 +6,7 @@
 //! with observer and compensation behind `port`, and `run_history` stores the run; `metrics`, `values` and
 //! `observer_metrics` compute the figures, `verdict` compares them with their bounds, `campaign` combines all seeds;
 //! `page`, `junit`, `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are the
-//! controller's part of a log; `live_view` shows a run while it goes on.
+//! controller's part of a log.
 
 mod any_motion;
 mod campaign;
@@ -20,7 +20,6 @@ pub mod execution;
 pub mod faults;
 pub mod file;
 mod junit;
-pub mod live_view;
 pub mod log_file;
 mod memory_file;
 pub mod metrics;
@@ -65,6 +64,7 @@ use report::progress::Progress;
 use report::provenance;
 use report::seeds::Seeds;
 use report::write::write_text;
+pub use simulation::sim::live_view;
 
 /// Names of the page, of the results as JSON and as JUnit XML, and of the logs.
 const REPORT: &str = "report.html";

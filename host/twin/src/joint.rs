@@ -15,7 +15,7 @@ use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
 use scenario::execution::{RunSpec, setup};
-use scenario::live_view::{description, live_sample};
+use scenario::live_view::{description, true_sample};
 use scenario::plant::PlantName;
 use scenario::port::Translator;
 use scenario::rig::{Rig, RunError};
@@ -268,7 +268,8 @@ impl Joint<'_> {
         );
         let target = f64::from(feedback.target.minus(self.drive.origin()).to_rad());
         let wanted = if follows && feedback.output_position.is_some() { target } else { f64::NAN };
-        let sample = live_sample(self.rig.plant(), self.rig.half_backlash(), wanted);
+        let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
+        let sample = true_sample(joint, &torques, self.rig.half_backlash(), wanted);
         Sample { link: self.truth().link, ..sample }
     }
 

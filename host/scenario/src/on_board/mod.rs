@@ -16,13 +16,12 @@ mod twin;
 
 use joint_file::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
-use live::Live;
 use model_core::controller::design::{NominalPlant, control_source};
 pub use request::BoardRequest;
 use request::{check_request, check_test};
 
 use super::case::{Case, read_controller_joint};
-use super::execution::RunSpec;
+use super::execution::{RunSpec, Watch};
 use super::file::TestFile;
 use super::plant::PlantName;
 use super::record::BoardRun;
@@ -51,6 +50,9 @@ pub struct Boards<'w> {
     toolchain: Option<Toolchain>,
     version: String,
 }
+
+/// History of a run on a board, and its record.
+type BoardResult = Result<(RunHistory, BoardRun), RunError>;
 
 /// Joints and settings of a run.
 struct RunJoints {
@@ -135,18 +137,11 @@ impl<'w> Boards<'w> {
 
     /// Runs a case on a board and on the host; fails if the runs differ in any bit. The role `observer`, whose plant is
     /// on the host, shows itself in a live view under a name.
-    pub fn run(
-        &self,
-        test: &Test,
-        case: &Case,
-        seed: u64,
-        spec: RunSpec,
-        shown: (Option<&Live>, &str),
-    ) -> Result<(RunHistory, BoardRun), RunError> {
+    pub fn run(&self, test: &Test, case: &Case, seed: u64, spec: RunSpec, watch: Watch<'_>) -> BoardResult {
         let pair = self.pair(test, case)?;
         match self.request.role {
             Role::Loop => self.run_loop(test, case, seed, &pair),
-            Role::Observer | Role::Plant => self.run_observer(test, case, seed, spec, &pair, shown),
+            Role::Observer | Role::Plant => self.run_observer(test, case, seed, spec, &pair, watch),
         }
     }
 

@@ -8,15 +8,12 @@ use std::time::{Duration, Instant};
 use super::faults::{counts_per_turn, mounting_faults, quantised_faults};
 use super::port::BoardPort;
 use super::twin::{Twin, TwinResult};
-use super::{Boards, RunJoints};
+use super::{BoardResult, Boards, RunJoints};
 use crate::case::Case;
 use crate::execution::{RunSpec, Watch, execute_with};
-use crate::record::BoardRun;
 use crate::rig::RunError;
-use crate::run_history::RunHistory;
 use crate::suite::Test;
 use board::session::Session;
-use live::Live;
 use report::failure::Failure;
 
 /// Limit of a run on a board in lockstep, independent of the test's time on the clock.
@@ -30,11 +27,11 @@ impl Boards<'_> {
         seed: u64,
         spec: RunSpec,
         pair: &RunJoints,
-        (live, name): (Option<&Live>, &str),
-    ) -> Result<(RunHistory, BoardRun), RunError> {
+        watch: Watch<'_>,
+    ) -> BoardResult {
         let (session, image) = self.session(pair)?;
         let session = Rc::new(RefCell::new(session));
-        let watch = Watch::until(Instant::now() + RUN_TIMEOUT).beside(live).named(Some(name));
+        let watch = watch.extended_to(Instant::now() + RUN_TIMEOUT);
         let history = execute_with(&test.file, case, seed, spec, watch, &|designed| {
             Ok(Box::new(BoardPort::new(session.clone(), designed)))
         });
@@ -51,13 +48,7 @@ impl Boards<'_> {
         Ok((history, run))
     }
 
-    pub(super) fn run_loop(
-        &self,
-        test: &Test,
-        case: &Case,
-        seed: u64,
-        pair: &RunJoints,
-    ) -> Result<(RunHistory, BoardRun), RunError> {
+    pub(super) fn run_loop(&self, test: &Test, case: &Case, seed: u64, pair: &RunJoints) -> BoardResult {
         let designed = case.design(&test.file)?;
         let surroundings = &case.truth.surroundings;
         let turns = counts_per_turn(surroundings);

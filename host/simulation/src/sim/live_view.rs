@@ -1,8 +1,10 @@
-//! Joint and snapshots for the live view.
+//! Joints, snapshots and plants for the live view.
 
 use live::{Description, Sample};
 use model_core::gears::Kinematics;
 use parameters::JointParameters;
+use reference::drive_train::TrueTorques;
+use reference::joint::Observation;
 
 use super::snapshot::Snapshot;
 
@@ -32,5 +34,25 @@ pub fn sample(joint: &JointParameters, snapshot: &Snapshot) -> Sample {
         ..Sample::at(snapshot.time)
     };
     snapshot.teeth.iter().for_each(|mesh| sample.meshes.add(mesh.contact, mesh.force));
+    sample
+}
+
+/// State of a plant in its drive train as a sample, with its half-backlash [m] and the desired angle of its link [rad].
+pub fn true_sample(joint: &Observation, torques: &TrueTorques, half_backlash: f64, wanted: f64) -> Sample {
+    let mut sample = Sample {
+        wanted,
+        link: joint.link_angle,
+        link_speed: joint.link_speed,
+        motor: joint.motor_angle,
+        gap: joint.gap,
+        half_backlash,
+        mesh_force: joint.sun_force(),
+        load_torque: torques.load_friction + torques.gravity + torques.disturbance,
+        motor_torque: torques.air_gap,
+        ..Sample::at(joint.time)
+    };
+    for (contacts, forces) in joint.contacts.iter().zip(&joint.mesh_forces) {
+        contacts.iter().zip(forces).for_each(|(contact, force)| sample.meshes.add(*contact, *force));
+    }
     sample
 }

@@ -25,7 +25,7 @@ use reference::closed_loop::Figures;
 use reference::drive_train::DriveTrainParameters;
 use scenario::case::Case;
 use scenario::controller::ControllerName;
-use scenario::execution::{RunSpec, execute};
+use scenario::execution::{RunSpec, Watch, execute};
 use scenario::plant::PlantName;
 use scenario::run_history::RunHistory;
 use scenario::suite::{Test, from_text};
@@ -77,7 +77,7 @@ fn run(test: &Test, seed: u64, controller: ControllerName) -> RunHistory {
 
 /// Runs a controller through a test on a given case.
 fn run_in(test: &Test, case: &Case, seed: u64, spec: RunSpec) -> RunHistory {
-    execute(&test.file, case, seed, spec, Instant::now() + RUN_TIME_MAX).expect("the test runs")
+    execute(&test.file, case, seed, spec, Watch::until(Instant::now() + RUN_TIME_MAX)).expect("the test runs")
 }
 
 fn on_reference(controller: ControllerName) -> RunSpec {

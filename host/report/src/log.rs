@@ -156,6 +156,11 @@ impl Message {
         words.for_each(|word| self.word(word));
     }
 
+    /// Bytes of the message with their header.
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+
     fn count(&mut self, count: usize) {
         self.whole(count as u32);
     }

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
+use live::Live;
 use rayon::prelude::*;
 
 use super::controller::ControllerName;
 use super::controller_log::ObserverOrigin;
-use super::execution::{RunSpec, execute};
+use super::execution::{RunSpec, Watch, execute};
 use super::file::{Aggregate, fault_word};
 use super::log_file::{self, LoggedRun};
 use super::memory_file;
@@ -39,6 +40,8 @@ pub struct RunOptions<'c> {
     pub boards: Option<&'c Boards<'c>>,
     /// Saves the estimated parameters after each run, as a board does.
     pub save_memories: bool,
+    /// Live view of the tested controller's runs.
+    pub live: Option<&'c Live>,
     /// Folder of the logs.
     pub folder: &'c Folder,
     /// Called after every run with the number of finished runs.
@@ -218,9 +221,12 @@ fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) 
         drawn: case.drawn.clone(),
         ..TestRun::default()
     };
-    let history = match options.boards.filter(|_| job.controller == test.file.controller) {
-        None => execute(&test.file, &case, job.seed, spec, deadline),
-        Some(boards) => boards.run(test, &case, job.seed, spec).map(|(history, board)| {
+    let is_tested = job.controller == test.file.controller;
+    let name = format!("{}, seed {}", test.name, job.seed);
+    let watch = Watch::until(deadline).beside(options.live);
+    let history = match options.boards.filter(|_| is_tested) {
+        None => execute(&test.file, &case, job.seed, spec, watch.named(is_tested.then_some(&name))),
+        Some(boards) => boards.run(test, &case, job.seed, spec, watch.named(Some(&name))).map(|(history, board)| {
             run.board = Some(board);
             history
         }),
@@ -228,7 +234,7 @@ fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) 
     let both = history.and_then(|history| {
         let wanted = test.file.gains.is_some() && job.controller.wants_gains();
         let other = RunSpec { controller: job.controller.without_gap(), without_gap: true, ..spec };
-        let without_gap = wanted.then(|| execute(&test.file, &case, job.seed, other, deadline)).transpose()?;
+        let without_gap = wanted.then(|| execute(&test.file, &case, job.seed, other, watch)).transpose()?;
         Ok((history, without_gap))
     });
     match both {
@@ -250,8 +256,7 @@ fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) 
             let origin = case.observer_origin(&test.file, history.memory_at_start);
             remarks
                 .extend(origin.filter(|_| job.controller.is_compensation()).iter().flat_map(ObserverOrigin::remarks));
-            let every_period = job.controller == test.file.controller;
-            let logged = LoggedRun { history: &history, faults: &test.file.faults, every_period, remarks };
+            let logged = LoggedRun { history: &history, faults: &test.file.faults, every_period: is_tested, remarks };
             if job.keep_logs {
                 run.log = Some(log_file::write(options.folder, &name, logged)?);
             }

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+pub use live::Watch;
 use model_core::compensation::CompensationTables;
 use model_core::compensation::design::design_compensation;
 use model_core::observer::design::observer_settings;
@@ -19,6 +20,7 @@ use parameters::JointParameters;
 use reference::joint::{RelativeState, Start};
 use report::failure::{Failure, Outcome};
 use report::interruption;
+use simulation::sim::live_view::description;
 
 /// Controller and plant of a run.
 #[derive(Debug, Clone, Copy)]
@@ -46,9 +48,9 @@ pub fn execute(
     case: &Case,
     seed: u64,
     spec: RunSpec,
-    deadline: Instant,
+    watch: Watch<'_>,
 ) -> Result<RunHistory, RunError> {
-    execute_with(file, case, seed, spec, deadline, &host_port)
+    execute_with(file, case, seed, spec, watch, &host_port)
 }
 
 /// Runs a compensation in one case on the host with given tables; cases that differ only in seed or true joint can
@@ -61,7 +63,7 @@ pub fn execute_designed(
     deadline: Instant,
     designed: &Designed,
 ) -> Result<RunHistory, RunError> {
-    run(file, case, seed, spec, deadline, Some(designed), &host_port)
+    run(file, case, seed, spec, Watch::until(deadline), Some(designed), &host_port)
 }
 
 /// Port to observer and compensation in this process.
@@ -75,11 +77,11 @@ pub fn execute_with(
     case: &Case,
     seed: u64,
     spec: RunSpec,
-    deadline: Instant,
+    watch: Watch<'_>,
     port: MakePort<'_>,
 ) -> Result<RunHistory, RunError> {
     let designed = if spec.controller.is_compensation() { Some(case.design(file)?) } else { None };
-    run(file, case, seed, spec, deadline, designed.as_ref(), port)
+    run(file, case, seed, spec, watch, designed.as_ref(), port)
 }
 
 fn run(
@@ -87,7 +89,7 @@ fn run(
     case: &Case,
     seed: u64,
     spec: RunSpec,
-    deadline: Instant,
+    watch: Watch<'_>,
     designed: Option<&Designed>,
     port: MakePort<'_>,
 ) -> Result<RunHistory, RunError> {
@@ -101,7 +103,7 @@ fn run(
         }
         (None, None) => ActiveController::rival(spec.controller, case.knowledge(), case.bandwidth(file)?),
     };
-    let run = RunContext { file, case, spec, designed, deadline };
+    let run = RunContext { file, case, spec, designed, watch };
     if file.from_memory && spec.controller.is_compensation() {
         // The first run has other noise, so that the memory holds the joint and not the noise.
         run.execute(&mut controller, !seed)?;
@@ -139,25 +141,29 @@ struct RunContext<'r> {
     case: &'r Case,
     spec: RunSpec,
     designed: Option<&'r Designed>,
-    deadline: Instant,
+    watch: Watch<'r>,
 }
 
 impl RunContext<'_> {
     fn execute(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
-        let Self { file, case, spec, designed, deadline } = *self;
+        let Self { file, case, spec, designed, watch } = *self;
         let rig = Rig::new(&setup(file, case, seed, spec))?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
         let mut history = RunHistory::begin(rig.period(), rig.periods());
         // The compensation has a translator of its own; this one logs the readings as they arrive.
         let mut translator = translator(case);
+        let mut feed = watch.claim(|name| description(1, name, &case.truth.parameters));
         rig.run(controller, &mut set_points, &mut |period| {
-            if period.index % PERIODS_BETWEEN_CHECKS == 0 && Instant::now() > deadline {
+            if period.index % PERIODS_BETWEEN_CHECKS == 0 && watch.is_over() {
                 return Err(RunError::TimedOut);
             }
             if interruption::requested() {
                 return Err(RunError::Interrupted);
             }
             history.add_period(period, &mut translator);
+            if let Some(feed) = &mut feed {
+                feed.publish(period.plant.joint().time, || period.live_sample());
+            }
             Ok(())
         })?;
         history.memory = controller.memory();

@@ -47,6 +47,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicU32;
 use std::time::Instant;
 
+use live::{Live, PacedLiveOptions};
+
 use campaign::{FinishedTest, RunOptions};
 use on_board::{BoardRequest, Boards};
 use plant::PlantName;
@@ -62,6 +64,7 @@ use report::progress::Progress;
 use report::provenance;
 use report::seeds::Seeds;
 use report::write::write_text;
+pub use simulation::sim::live_view;
 
 /// Names of the page, of the results as JSON and as JUnit XML, and of the logs.
 const REPORT: &str = "report.html";
@@ -90,6 +93,8 @@ pub struct TestRequest<'w> {
     pub json: Option<&'w Path>,
     /// Further file for the results as JUnit XML.
     pub junit: Option<&'w Path>,
+    /// Live view of the runs on the host, and of those in the role `observer`.
+    pub live: PacedLiveOptions,
 }
 
 /// Tests that run on one kind of board, or on the host.
@@ -127,7 +132,8 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     folder::check_files(&[("json", request.json), ("junit", request.junit)], &read)?;
     folder.make()?;
     folder::make(&folder.file(log_file::FOLDER))?;
-    let (tested, not_run) = run_groups(groups, request, &folder, progress)?;
+    let live = Live::start_paced(&request.live, "joint hil", progress)?;
+    let (tested, not_run) = run_groups(groups, request, &folder, live.as_ref(), progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
@@ -160,6 +166,7 @@ fn run_groups(
     groups: Vec<PreparedGroup<'_>>,
     request: &TestRequest<'_>,
     folder: &Folder,
+    live: Option<&Live>,
     progress: &Progress,
 ) -> Outcome<GroupResults> {
     let runs_of = |test: &Test| test.seeds(request.seed, request.full).len() * test.controllers().len();
@@ -175,6 +182,7 @@ fn run_groups(
             full: request.full,
             boards: boards.as_ref(),
             save_memories: request.save_memories,
+            live,
             folder,
             done: &|runs| progress.set_position(runs),
         };

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, value_parser};
+use live::LiveOptions;
 use scenario::plant::PlantName;
 
 use crate::protocol::DriveName;
@@ -17,9 +18,11 @@ Examples:
   joint twin hil/motor-faults.toml --drive damiao        plant and faults of a test file
   joint twin --drive moteus --id 1=q1 --id 2=k9.toml     two joints on one bus
   joint twin --drive odrive --lockstep 1 --seed 7        1 ms of the joint's time for each frame of the client
+  joint twin --live                                      a page that shows the joint and commands it
   joint twin --control /tmp/q1.sock                      commands of the socket change load, backlash and faults
 
-docs/reference/twin.md describes clients, wires and the commands of the control socket.")]
+docs/reference/twin.md describes clients, wires and the commands of the control socket, docs/reference/live.md the
+live view.")]
 pub struct Arguments {
     /// Joint file, preset, or test file with the plant and its faults [default: q1]
     #[arg(value_name = "FILE", conflicts_with = "ids")]
@@ -69,6 +72,9 @@ pub struct Arguments {
     /// Unix socket that takes commands as lines of JSON
     #[arg(long, value_name = "PATH")]
     pub control: Option<PathBuf>,
+    /// Live view.
+    #[command(flatten)]
+    pub live: LiveOptions,
     /// Log of truth, drives and frames as MCAP; an older file of that name is overwritten
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,

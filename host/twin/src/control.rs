@@ -11,6 +11,8 @@
 //! | `can_errors` | 0 to 1 | share of the frames that noise on the bus destroys |
 //! | `bus_off` | `true` | takes the CAN controllers of the drives off the bus, as a burst of errors does |
 //! | `end_faults` | `true` | ends all faults, and the noise on the bus |
+//! | `mode` | object | mode of the drive in place of its client's commands |
+//! | `clear_fault` | `true` | clears the fault of the drive |
 //! | `status` | `true` | state of the joints |
 
 use std::fmt::Write as _;
@@ -31,6 +33,7 @@ use crate::bus::Bus;
 use crate::bus_report::BusReport;
 use crate::can::ErrorState;
 use crate::event::Event;
+use crate::mode::Mode;
 
 /// Command of one line.
 #[derive(Debug, Default, Deserialize)]
@@ -51,6 +54,9 @@ pub struct Order {
     bus_off: bool,
     #[serde(default)]
     end_faults: bool,
+    mode: Option<Mode>,
+    #[serde(default)]
+    clear_fault: bool,
     #[serde(default)]
     status: bool,
 }
@@ -86,6 +92,7 @@ pub struct Status {
     name: String,
     state: String,
     fault: Option<String>,
+    mode: &'static str,
     position_turns: f32,
     output_turns: Option<f32>,
     link_rad: f64,
@@ -161,15 +168,18 @@ fn remove_stale_socket(path: &Path) {
 fn serve(stream: &UnixStream, events: &Sender<Event>) {
     let Ok(mut writer) = stream.try_clone() else { return };
     for line in BufReader::new(stream).lines().map_while(Result::ok) {
-        let (answer, answered) = channel();
-        if events.send(Event::Control(line, answer)).is_err() {
-            return;
-        }
-        let Ok(text) = answered.recv() else { return };
+        let Some(text) = ask(line, events) else { return };
         if writeln!(writer, "{text}").is_err() {
             return;
         }
     }
+}
+
+/// Hands a line to the run; returns the answer as JSON, or `None` once the run is over.
+pub fn ask(line: String, events: &Sender<Event>) -> Option<String> {
+    let (answer, answered) = channel();
+    events.send(Event::Control(line, answer)).ok()?;
+    answered.recv().ok()
 }
 
 /// Carries out a line; returns the answer as JSON.
@@ -190,15 +200,16 @@ fn read(line: &str, bus: &Bus<'_>) -> Result<(Order, Vec<Fault>), Reply> {
     let joints = &bus.joints;
     let order: Order = serde_json::from_str(line)
         .map_err(|error| refused(error.to_string(), "write one JSON object a line: docs/reference/twin.md"))?;
-    let numbers = [
+    let own = [
         ("load_N_m", order.load, -1e6, 1e6),
         ("half_backlash_um", order.half_backlash, 0.0, 1e4),
         ("supply_V", order.supply.map(f64::from), 0.0, 200.0),
         ("motor_temperature_C", order.motor_temperature.map(f64::from), -50.0, 500.0),
         ("can_errors", order.can_errors, 0.0, 1.0),
     ];
-    for (key, value, low, high) in numbers {
-        if value.is_some_and(|value| !(low..=high).contains(&value)) {
+    let own = own.into_iter().filter_map(|(key, value, low, high)| Some((key, value?, low, high)));
+    for (key, value, low, high) in own.chain(order.mode.map(Mode::numbers).unwrap_or_default()) {
+        if !(low..=high).contains(&value) {
             return Err(refused(format!("`{key}` is out of range"), format!("write a number from {low} to {high}")));
         }
     }
@@ -276,6 +287,12 @@ fn apply(order: &Order, faults: &[Fault], bus: &mut Bus<'_>) -> Reply {
         for fault in faults {
             joint.rig().inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
         }
+        if order.clear_fault {
+            joint.drive.clear_fault();
+        }
+        if let Some(mode) = order.mode {
+            joint.set_mode(mode);
+        }
         if order.status {
             states.push(status(bus, index));
         }
@@ -291,6 +308,7 @@ fn status(bus: &Bus<'_>, index: usize) -> Status {
         name: joint.name.clone(),
         state: format!("{:?}", joint.drive.state()),
         fault: joint.drive.fault().map(|fault| format!("{fault:?}")),
+        mode: joint.mode(),
         position_turns: feedback.position.to_f32(),
         output_turns: feedback.output_position.map(|position| position.to_f32()),
         link_rad: truth.link,

@@ -7,6 +7,7 @@ use drives::drive::{Feedback, Gains, Sensors, SetPoint, VirtualPower};
 use drives::turns::Ratio;
 use drives::{Drive, Settings, Turns};
 use joint_file::sheet;
+use live::{Description, Sample};
 use model_core::compensation::{Compensation, Stage};
 use model_core::gears::Kinematics;
 use model_core::observer::{MAPPED, Observer, Samples, Source};
@@ -14,12 +15,14 @@ use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
 use scenario::execution::{RunSpec, setup};
+use scenario::live_view::{description, true_sample};
 use scenario::plant::PlantName;
 use scenario::port::Translator;
 use scenario::rig::{Rig, RunError};
 use scenario::suite::{self, Choice, Test};
 
 use crate::mapping;
+use crate::mode::{ActiveMode, Mode};
 use crate::protocol::{DriveName, Server};
 
 /// Bandwidth of the speed from the encoders, in a control period [rad]: a compromise of lag and quantisation.
@@ -95,6 +98,9 @@ pub struct Joint<'d> {
     rig: Rig,
     translator: Translator,
     compensated: Option<Compensated<'d>>,
+    mode: Option<ActiveMode>,
+    /// Planets, ratio and rated torque of the true joint.
+    description: Description,
     /// Angle zero of the joint on the scale of the raw output encoder [turns].
     output_zero: f64,
     seed: u64,
@@ -163,6 +169,8 @@ impl Prepared {
                 compensation: Compensation::new(&designed.compensation),
                 state: CompensatedState::default(),
             }),
+            mode: None,
+            description: description(*id, &self.name, &case.truth.parameters),
             output_zero: case.zeros.counts(turns.map(u64::cast_signed))[1] as f64 / turns[1] as f64,
             seed: choices.seed,
         })
@@ -220,6 +228,9 @@ impl Joint<'_> {
             ..Sensors::default()
         };
         self.power.read(&mut sensors);
+        if let Some(mode) = &self.mode {
+            mode.command(&mut self.drive, begun.time);
+        }
         let torque = self.drive_step(&sensors, &samples);
         self.translator.note(torque);
         self.rig.end_period(begun.time, f64::from(torque))?;
@@ -247,6 +258,37 @@ impl Joint<'_> {
             Some(output.torque * ratio)
         };
         drive.step(sensors, Some(&mut follow))
+    }
+
+    /// Commands the drive in place of its client from now on, or gives it back.
+    pub fn set_mode(&mut self, mode: Mode) {
+        let now = self.time();
+        self.mode = mode.start(&mut self.drive, now, self.mode);
+    }
+
+    /// Word of the mode.
+    pub fn mode(&self) -> &'static str {
+        self.mode.as_ref().map_or(Mode::Client.word(), ActiveMode::word)
+    }
+
+    /// Description for the live view.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// State for the live view. The drive's target counts as the desired angle of the link while the drive follows one
+    /// and an output encoder gives both angles one zero.
+    pub fn live_sample(&self) -> Sample {
+        let feedback = self.drive.feedback();
+        let follows = matches!(
+            self.drive.set_point(),
+            Some(SetPoint::Position(_) | SetPoint::Velocity { .. } | SetPoint::Impedance { .. })
+        );
+        let target = f64::from(feedback.target.minus(self.drive.origin()).to_rad());
+        let wanted = if follows && feedback.output_position.is_some() { target } else { f64::NAN };
+        let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
+        let sample = true_sample(joint, &torques, self.rig.half_backlash(), wanted);
+        Sample { link: self.truth().link, ..sample }
     }
 
     /// Time of the joint [s].

@@ -2,8 +2,8 @@
 //! pseudo-terminal or to a TCP port and command the joints as if they were real.
 //!
 //! `joint` is one joint with its drive; `bus` is all of them with the frames between them; `can` is the arbitration and
-//! the errors of a CAN bus; `wire` is the form of the frames on a line; `endpoint` is the line; `clock` paces the simulation; `control` changes joints while they run;
-//! `log` records; `session` combines them.
+//! the errors of a CAN bus; `wire` is the form of the frames on a line; `endpoint` is the line; `clock` paces the
+//! simulation; `control` changes joints while they run and commands a `mode`; `log` records; `session` combines them.
 
 mod arguments;
 mod bus;
@@ -17,6 +17,7 @@ mod gate;
 mod joint;
 mod log;
 mod mapping;
+mod mode;
 mod protocol;
 mod session;
 mod summary;

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
+use live::{Commands, Feed, Live};
 use report::failure::{Failure, Outcome};
 use report::interruption::{self, UninterruptedWork};
 use report::output;
@@ -63,14 +65,22 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let gate = Gate::default();
     let (endpoint, client) = Endpoint::open(wire, arguments.port, arguments.link.as_deref(), &sender, &gate)?;
     let _control = arguments.control.as_ref().map(|path| Socket::listen(path, &sender)).transpose()?;
+    let live = Live::start(&arguments.live, "joint twin", None, Some(commands(&sender)))?;
+    let feeds =
+        live.iter().flat_map(|live| bus.joints.iter().filter_map(|joint| live.feed(joint.description().clone())));
+    let feeds: Vec<Feed> = feeds.collect();
     let log = arguments.log.as_ref().map(|path| TwinLog::begin(path, &bus.joints, remarks(arguments))).transpose()?;
-    announce(arguments, wire, &endpoint.name, &bus)?;
+    announce(arguments, wire, &endpoint.name, &bus, live.as_ref())?;
+    if let Some(live) = live.as_ref().filter(|_| arguments.live.live_wait) {
+        live.wait();
+    }
     let session = Session {
         bus,
         wire,
         gate,
         clients: client.into_iter().collect(),
         log,
+        feeds,
         duration: arguments.duration.unwrap_or(f64::INFINITY),
         received: 0,
         sent: 0,
@@ -156,6 +166,12 @@ fn check_rates(joints: &[Joint<'_>]) -> Outcome<()> {
     }
 }
 
+/// Commands of the live view, carried out as those of the control socket.
+fn commands(events: &Sender<Event>) -> Commands {
+    let events = events.clone();
+    Arc::new(move |line| control::ask(line, &events))
+}
+
 fn remarks(arguments: &Arguments) -> BTreeMap<String, String> {
     [
         ("drive", arguments.drive.word()),
@@ -168,7 +184,7 @@ fn remarks(arguments: &Arguments) -> BTreeMap<String, String> {
     .collect()
 }
 
-fn announce(arguments: &Arguments, wire: WireName, port: &str, bus: &Bus<'_>) -> Outcome<()> {
+fn announce(arguments: &Arguments, wire: WireName, port: &str, bus: &Bus<'_>, live: Option<&Live>) -> Outcome<()> {
     let joints: Vec<String> = bus.joints.iter().map(|joint| describe(joint)).collect();
     let mut text = format!(
         "port:     {port}\nclient:   {}\njoints:   {}\n",
@@ -178,6 +194,7 @@ fn announce(arguments: &Arguments, wire: WireName, port: &str, bus: &Bus<'_>) ->
     if let Some(path) = &arguments.control {
         text += &format!("control:  {}\n", path.display());
     }
+    text += live.map_or("", Live::text);
     if arguments.duration.is_none() {
         text += "Ctrl-C ends it\n";
     }
@@ -197,6 +214,8 @@ struct Session<'d> {
     gate: Gate,
     clients: Vec<Client>,
     log: Option<TwinLog>,
+    /// Feeds of the live view, one for each joint; empty without it.
+    feeds: Vec<Feed>,
     /// Simulated time of the run [s].
     duration: f64,
     received: u64,
@@ -271,6 +290,9 @@ impl Session<'_> {
         let packets = self.bus.period().map_err(broken)?;
         if let Some(log) = &mut self.log {
             log.sample(&self.bus.joints)?;
+        }
+        for (joint, feed) in self.bus.joints.iter().zip(&mut self.feeds) {
+            feed.publish(joint.time(), || joint.live_sample());
         }
         self.send(&packets)
     }

@@ -53,6 +53,7 @@ pub fn run_all(folder: &Path, seeds: u64) -> Outcome<()> {
                 out: Some(folder.join(name)),
                 json: None,
                 junit: None,
+                live: Default::default(),
             };
             match scenario::run(&request, progress) {
                 Err(failure) if failure.exit_code() == EXIT_INTERRUPTED => return Err(failure),

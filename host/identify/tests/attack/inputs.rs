@@ -245,6 +245,7 @@ fn new_run_log() -> Option<Vec<u8>> {
         out: Some(folder.path().join("out")),
         json: None,
         junit: None,
+        live: Default::default(),
     };
     scenario::run(&request, &Progress::new()).ok()?;
     let mut logs = fs::read_dir(folder.path().join("out/runs")).ok()?;

@@ -6,6 +6,7 @@ use board::device::image;
 use board::line_options::{LineOptions, Mode, RoleName};
 use board::profile::BUILTIN;
 use joint_run::plan::RunRequest;
+use live::PacedLiveOptions;
 use report::seeds::Seeds;
 use scenario::plant::PlantName;
 
@@ -22,6 +23,7 @@ const DECIMATION: u16 = 20;
   joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
   joint hil hil --host --plant reference      all tests of observer and compensation in the folder hil
   joint hil hil/t2.toml --host --seed 7       one of them, with another seed
+  joint hil hil/t2.toml --host --live --live-speed 1   a page that shows it in real time
   joint hil hil/t2.toml --role loop           the same with joint and controller on the emulated board
 
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
@@ -71,6 +73,9 @@ pub struct Arguments {
     /// Steps between two samples; the digest covers every step [default: 20]
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u16).range(1..))]
     pub decimation: Option<u16>,
+    /// Test files: live view of the tested controller, one run at a time, on the host or with --role observer.
+    #[command(flatten)]
+    pub live: PacedLiveOptions,
     /// Folder for report.html, record.json, log.txt and run.mcap; a file that this command did not write is refused [default: joint-out/hil/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

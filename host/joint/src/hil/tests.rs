@@ -45,6 +45,13 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
             .with_help("leave one of them out"));
     }
     let role = arguments.role.map_or(Role::Loop, Role::from);
+    let is_live = arguments.live.view.live.is_some() || arguments.live.view.live_udp.is_some();
+    if is_live && !arguments.host && role == Role::Loop {
+        return Err(Failure::new(
+            "a live view shows plants on this machine, and with --role loop the plant is on the board",
+        )
+        .with_help("add --host or --role observer"));
+    }
     let path = arguments.file().to_owned();
     let group = TestGroup {
         choice: if arguments.full { Choice::Full } else { Choice::Short },
@@ -96,6 +103,7 @@ fn request_of_groups<'a>(
         out,
         json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),
         junit: arguments.junit.as_deref(),
+        live: arguments.live.clone(),
     }
 }
 
@@ -123,6 +131,8 @@ pub fn reject_test_arguments(arguments: &Arguments) -> Outcome<()> {
         ("plant", arguments.plant.is_some()),
         ("full", arguments.full && alone),
         ("junit", arguments.junit.is_some() && alone),
+        ("live", arguments.live.view.live.is_some() && alone),
+        ("live-udp", arguments.live.view.live_udp.is_some() && alone),
     ];
     let Some((name, _)) = test_arguments.iter().find(|(_, given)| *given) else { return Ok(()) };
     let file = arguments.file().display();

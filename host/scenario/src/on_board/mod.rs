@@ -21,7 +21,7 @@ pub use request::BoardRequest;
 use request::{check_request, check_test};
 
 use super::case::{Case, read_controller_joint};
-use super::execution::RunSpec;
+use super::execution::{RunSpec, Watch};
 use super::file::TestFile;
 use super::plant::PlantName;
 use super::record::BoardRun;
@@ -50,6 +50,9 @@ pub struct Boards<'w> {
     toolchain: Option<Toolchain>,
     version: String,
 }
+
+/// History of a run on a board, and its record.
+type BoardResult = Result<(RunHistory, BoardRun), RunError>;
 
 /// Joints and settings of a run.
 struct RunJoints {
@@ -132,12 +135,13 @@ impl<'w> Boards<'w> {
         }
     }
 
-    /// Runs a case on a board and on the host; fails if the runs differ in any bit.
-    pub fn run(&self, test: &Test, case: &Case, seed: u64, spec: RunSpec) -> Result<(RunHistory, BoardRun), RunError> {
+    /// Runs a case on a board and on the host; fails if the runs differ in any bit. The role `observer`, whose plant is
+    /// on the host, shows itself in a live view under a name.
+    pub fn run(&self, test: &Test, case: &Case, seed: u64, spec: RunSpec, watch: Watch<'_>) -> BoardResult {
         let pair = self.pair(test, case)?;
         match self.request.role {
             Role::Loop => self.run_loop(test, case, seed, &pair),
-            Role::Observer | Role::Plant => self.run_observer(test, case, seed, spec, &pair),
+            Role::Observer | Role::Plant => self.run_observer(test, case, seed, spec, &pair, watch),
         }
     }
 

@@ -8,12 +8,10 @@ use std::time::{Duration, Instant};
 use super::faults::{counts_per_turn, mounting_faults, quantised_faults};
 use super::port::BoardPort;
 use super::twin::{Twin, TwinResult};
-use super::{Boards, RunJoints};
+use super::{BoardResult, Boards, RunJoints};
 use crate::case::Case;
-use crate::execution::{RunSpec, execute_with};
-use crate::record::BoardRun;
+use crate::execution::{RunSpec, Watch, execute_with};
 use crate::rig::RunError;
-use crate::run_history::RunHistory;
 use crate::suite::Test;
 use board::session::Session;
 use report::failure::Failure;
@@ -29,10 +27,12 @@ impl Boards<'_> {
         seed: u64,
         spec: RunSpec,
         pair: &RunJoints,
-    ) -> Result<(RunHistory, BoardRun), RunError> {
+        watch: Watch<'_>,
+    ) -> BoardResult {
         let (session, image) = self.session(pair)?;
         let session = Rc::new(RefCell::new(session));
-        let history = execute_with(&test.file, case, seed, spec, Instant::now() + RUN_TIMEOUT, &|designed| {
+        let watch = watch.extended_to(Instant::now() + RUN_TIMEOUT);
+        let history = execute_with(&test.file, case, seed, spec, watch, &|designed| {
             Ok(Box::new(BoardPort::new(session.clone(), designed)))
         });
         let mut session = session.borrow_mut();
@@ -48,13 +48,7 @@ impl Boards<'_> {
         Ok((history, run))
     }
 
-    pub(super) fn run_loop(
-        &self,
-        test: &Test,
-        case: &Case,
-        seed: u64,
-        pair: &RunJoints,
-    ) -> Result<(RunHistory, BoardRun), RunError> {
+    pub(super) fn run_loop(&self, test: &Test, case: &Case, seed: u64, pair: &RunJoints) -> BoardResult {
         let designed = case.design(&test.file)?;
         let surroundings = &case.truth.surroundings;
         let turns = counts_per_turn(surroundings);

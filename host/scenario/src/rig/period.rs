@@ -1,6 +1,8 @@
 //! Result of one control period, for the recorders of a run.
 
+use live::Sample;
 use reference::closed_loop::SetPoint;
+use simulation::sim::live_view::true_sample;
 
 use crate::faults::ControllerInputs;
 use crate::plant::Plant;
@@ -29,6 +31,14 @@ pub struct Period<'r> {
 }
 
 impl Period<'_> {
+    /// State for the live view, with the gap by the observer where it is valid.
+    pub fn live_sample(&self) -> Sample {
+        let gap = self.answer.map(|answer| answer.estimates.gap).filter(|gap| gap.valid);
+        let estimated_gap = gap.map_or(f64::NAN, |gap| gap.value.into());
+        let (joint, torques) = (self.plant.joint(), self.plant.torques());
+        Sample { estimated_gap, ..true_sample(joint, &torques, self.half_backlash, self.wanted) }
+    }
+
     /// Torque that brakes the link [N m].
     pub fn load_torque(&self) -> f64 {
         let torques = self.plant.torques();

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::scheme::{SchemeChoice, SchemeName};
 use super::start::StartName;
 use board::device::board::Board;
+use live::PacedLiveOptions;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 
@@ -14,6 +15,7 @@ use report::failure::{Failure, Outcome};
   joint sim                                        joint q1, turning under its rated torque
   joint sim paper --set half_backlash_um=120       the paper's joint, chaotic
   joint sim joints/l1.toml --profile reversals     torque steps through the gap
+  joint sim --profile reversals --live --live-wait --live-speed 0.1   a page that shows it in slow motion
   joint sim paper --scheme all                     every scheme against the reference
 
 Exit code: 0 if the run came to its end, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
@@ -33,6 +35,9 @@ pub struct Arguments {
     /// Skips the energy balance
     #[arg(long)]
     pub no_energy: bool,
+    /// Live view.
+    #[command(flatten)]
+    pub live: PacedLiveOptions,
     /// Folder for report.html, history.csv and history.mcap; a file that this command did not write is refused
     /// [default: joint-out/sim/<joint>]
     #[arg(long, value_name = "DIR")]

@@ -2,7 +2,7 @@
 //!
 //! `plan` validates the request; `stepping` simulates the joint by a `scheme` from a `start` and passes a `snapshot` of
 //! every tick to `statistics`, `energy` and the files (`csv`, `log_file`, both with the `quantities`); `result` holds
-//! the results; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
+//! the results; `live_view` shows a run while it goes on; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
 
 pub mod arguments;
 pub mod comparison;
@@ -10,6 +10,7 @@ pub mod csv;
 pub mod energy;
 pub mod errors;
 pub mod files;
+pub mod live_view;
 pub mod log_file;
 mod page;
 mod pictures;
@@ -38,6 +39,7 @@ use stepping::RunEnd;
 use summary::SimulationSummary;
 
 use joint_file::{named, warnings};
+use live::Live;
 use report::command_line::quoted;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
@@ -76,11 +78,15 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::RUN_FILES)?;
+    let live = Live::start_paced(&arguments.live, "joint sim", progress)?;
+    let mut feed = live.as_ref().and_then(|live| live.feed(live_view::description(1, &plan.name, plan.parameters())));
     // An interruption must still finish the history.
     let uninterrupted = UninterruptedWork::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
-    let result = SimulationResult::simulate(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
+    let result =
+        SimulationResult::simulate(&plan, scheme, every, !arguments.no_energy, &mut files, feed.as_mut(), progress);
+    drop(feed);
     let stopped = matches!(&result, Ok(SimulationResult { end: RunEnd::Stopped, .. }));
     let mut result = match result {
         Ok(result) => result,

@@ -3,11 +3,13 @@
 use super::comparison::Comparison;
 use super::energy::{Balance, EnergyAccount};
 use super::files::HistoryFiles;
+use super::live_view;
 use super::plan::SimulationPlan;
 use super::scheme::SchemeName;
 use super::snapshot::Snapshot;
 use super::statistics::Statistics;
 use super::stepping::{self, RunEnd};
+use live::Feed;
 use report::failure::Outcome;
 use report::progress::Progress;
 use report::spectrum::Spectrum;
@@ -38,13 +40,14 @@ pub struct SimulationResult<'a> {
 }
 
 impl<'a> SimulationResult<'a> {
-    /// Runs a plan by a scheme; every `every`-th tick is stored and written.
+    /// Runs a plan by a scheme; every `every`-th tick is stored and written, every tick is shown live.
     pub fn simulate(
         plan: &'a SimulationPlan,
         scheme: SchemeName,
         every: u32,
         with_energy: bool,
         files: &mut HistoryFiles<'_>,
+        mut live: Option<&mut Feed>,
         progress: &Progress,
     ) -> Outcome<Self> {
         let (run, settle) = (&plan.run, plan.settle);
@@ -57,6 +60,9 @@ impl<'a> SimulationResult<'a> {
             if snapshot.tick.is_multiple_of(every) {
                 files.write(snapshot)?;
                 samples.push(snapshot.clone());
+            }
+            if let Some(feed) = &mut live {
+                feed.publish(snapshot.time, || live_view::sample(&run.joint, snapshot));
             }
             if snapshot.tick >= settle {
                 statistics.add_tick(snapshot);

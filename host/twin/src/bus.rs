@@ -7,7 +7,7 @@ use scenario::rig::RunError;
 
 use crate::joint::Joint;
 use crate::protocol::Server;
-use crate::wire::Packet;
+use wires::Packet;
 
 /// Packets that one packet of the client or one period may cause. Drives whose answers answer each other would go on
 /// for ever.

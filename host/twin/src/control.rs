@@ -204,11 +204,11 @@ fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
     let time_s = joints.first().map_or(0.0, Joint::time);
     for joint in joints.iter_mut().filter(|joint| order.joint.is_none_or(|id| joint.id == id)) {
         let (now, seed) = (joint.time(), joint.seed());
-        if let Some(load) = order.load {
-            joint.rig().set_external_torque(load);
+        if let Some((rig, load)) = joint.rig().zip(order.load) {
+            rig.set_external_torque(load);
         }
-        if let Some(half_backlash) = order.half_backlash {
-            joint.rig().set_half_backlash(1e-6 * half_backlash);
+        if let Some((rig, half_backlash)) = joint.rig().zip(order.half_backlash) {
+            rig.set_half_backlash(1e-6 * half_backlash);
         }
         if let Some(supply) = order.supply {
             joint.power.supply_voltage = supply;
@@ -216,11 +216,11 @@ fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
         if let Some(temperature) = order.motor_temperature {
             joint.power.set_motor_temperature(temperature);
         }
-        if order.end_faults {
-            joint.rig().end_faults(now);
+        if let Some(rig) = joint.rig().filter(|_| order.end_faults) {
+            rig.end_faults(now);
         }
-        for fault in faults {
-            joint.rig().inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
+        for (rig, fault) in faults.iter().filter_map(|fault| Some((joint.rig()?, fault))) {
+            rig.inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
         }
         if order.status {
             states.push(status(joint));

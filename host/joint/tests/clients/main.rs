@@ -7,6 +7,7 @@ mod bad_clients;
 #[path = "../command/mod.rs"]
 mod command;
 mod environment;
+mod image;
 mod line;
 mod lost_motion;
 mod twin;

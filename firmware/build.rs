@@ -4,7 +4,8 @@
 //! are designed for one control period per tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60, or the
 //! limit of the joint), for the largest torque through the teeth `JOINT_PEAK_TORQUE` in N m (default: the limit of the
 //! joint), without an output encoder if `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if the
-//! controller's joint is to differ from the true one. `JOINT_FORCED` is 1 if the worst-case tick exceeds the available
+//! controller's joint is to differ from the true one. Role `drive` has the drive `JOINT_DRIVE`, such as `odrive3`, with
+//! the identifier `JOINT_DRIVE_ID` (default: 1). `JOINT_FORCED` is 1 if the worst-case tick exceeds the available
 //! time and the build was forced; the hello reports it. Measuring binaries contain one module of tables for each joint
 //! of `MEASURED_JOINTS`, a list in the form of a search path.
 
@@ -21,6 +22,7 @@ fn main() {
     if let Err(message) = board().and_then(|board| {
         link(&board)?;
         write_tables(board.chip)?;
+        write_drive(&board)?;
         write_measured(board.chip)
     }) {
         message.lines().for_each(|line| println!("cargo::error={line}"));
@@ -54,11 +56,15 @@ fn board() -> Result<Board, String> {
         println!("cargo::rustc-check-cfg=cfg({name}, values({}))", values.join(", "));
     }
     println!("cargo::rustc-check-cfg=cfg(has_spi_slave)");
+    println!("cargo::rustc-check-cfg=cfg(has_can)");
     for (name, value) in board_file::cfgs(&board) {
         println!("cargo::rustc-cfg={name}={value:?}");
     }
     if board.spi_slave.is_some() {
         println!("cargo::rustc-cfg=has_spi_slave");
+    }
+    if board.can.is_some() && chip.has_can() {
+        println!("cargo::rustc-cfg=has_can");
     }
     Ok(board)
 }
@@ -120,6 +126,40 @@ fn control(file: &Path, told: &Path, chip: Chip) -> Result<String, String> {
         Ok(source) => Ok(source.text),
         Err(error) => Ok(format!("compile_error!({:?});\n", format!("{}: {error}", told.display()))),
     }
+}
+
+/// Writes maker, identifier and numbers of the drive of role `drive`.
+fn write_drive(board: &Board) -> Result<(), String> {
+    println!("cargo::rerun-if-env-changed=JOINT_DRIVE");
+    println!("cargo::rerun-if-env-changed=JOINT_DRIVE_ID");
+    let Some(maker) = variable("JOINT_DRIVE").filter(|typed| !typed.is_empty()) else {
+        return write("drive.rs", "compile_error!(\"JOINT_DRIVE names no drive\");\n");
+    };
+    let maker = virtual_drive::maker::NAMES.into_iter().find(|name| name.word == maker).ok_or_else(|| {
+        format!("JOINT_DRIVE={maker}: want one of {:?}", virtual_drive::maker::NAMES.map(|it| it.word))
+    })?;
+    let can = board.can.as_ref().ok_or("the board's file has no [can]")?;
+    if maker.is_flexible && !can.is_flexible() {
+        return Err(format!("JOINT_DRIVE={}: its frames are CAN FD, and {} is classical CAN", maker.word, can.unit));
+    }
+    let id = number("JOINT_DRIVE_ID", "the bus")?.unwrap_or(1.0);
+    if !(1.0..=f64::from(maker.max_id)).contains(&id) || id.fract() != 0.0 {
+        return Err(format!("JOINT_DRIVE_ID={id}: want a whole number from 1 to {}", maker.max_id));
+    }
+    let file = variable("JOINT_FILE").map_or_else(|| workspace().join("joints/q1.toml"), |file| workspace().join(file));
+    let mut joint = read(&file)?;
+    joint.surroundings.control_rate = tick_rate()?;
+    let bandwidth = model_core::compensation::design::good_bandwidth(&joint.parameters, &joint.surroundings)
+        .map_err(|error| format!("{}: {error}", file.display()))?;
+    let design = virtual_drive::DriveDesign::new(&joint.parameters, &joint.surroundings, bandwidth, true);
+    let source = format!(
+        "/// Maker of the drive.\npub type ThisMaker = virtual_drive::maker::{};\n\
+         /// Identifier of the drive on the bus.\npub const ID: u8 = {id};\n\
+         /// Numbers of the drive.\npub const DESIGN: virtual_drive::DriveDesign = {};\n",
+        maker.type_name,
+        design.rust_source()
+    );
+    write("drive.rs", &source)
 }
 
 /// Writes modules `joint_0`, `joint_1`, ... and `visit`, which visits their tables in this order.

@@ -3,6 +3,7 @@
 use board::device::board::{Board as Described, Chip};
 use board_file::ExternalClock;
 
+use crate::can_bus::CanCable;
 use crate::chips;
 use crate::cpu::{Board, Setup};
 use crate::image::Image;
@@ -38,6 +39,17 @@ fn cable(board: &Described) -> Cable {
     }
 }
 
+/// CAN bus of a board, by its file.
+fn can(board: &Described) -> CanCable {
+    board.description.can.map_or_else(CanCable::default, |can| CanCable {
+        unit: can.unit.trim_start_matches(char::is_alphabetic).parse().unwrap_or_default(),
+        send: pin(can.send.pin),
+        receive: pin(can.receive.pin),
+        bitrate: can.bitrate.into(),
+        data_bitrate: can.data_bitrate.map(u64::from),
+    })
+}
+
 /// Pin in the form of the model.
 pub fn pin(pin: board_file::Pin) -> Pin {
     Pin(pin.letter(), pin.number.into())
@@ -67,7 +79,7 @@ impl Subject {
 
     /// Starts the board with another cost of an instruction [thousandths of a cycle].
     pub fn start_at<'a>(&self, surroundings: Surroundings, cost: u64) -> Result<Board<'a>, String> {
-        let setup = Setup { surroundings, cable: cable(&self.board), cost };
+        let setup = Setup { surroundings, cable: cable(&self.board), can: can(&self.board), cost };
         let chip = match self.board.chip() {
             Chip::Stm32f405 => chips::f405::chip,
             Chip::Stm32g474 => chips::g474::chip,

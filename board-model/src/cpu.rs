@@ -5,11 +5,12 @@
 
 use unicorn_engine::{Arch, ArmCpuModel, HookType, Mode, Prot, RegisterARM, Unicorn, uc_error};
 
+use crate::can_bus::{CanBus, CanCable};
 use crate::image::Image;
 use crate::machine::{Chip, Machine};
 use crate::peripherals::dma::Transfer;
 use crate::peripherals::flash;
-use crate::scs::{FIRST_INTERRUPT, HARD_FAULT, Masks};
+use crate::scs::{FIRST_INTERRUPT, HARD_FAULT, Masks, SYSTICK};
 use crate::wires::{Cable, MICROSECOND, Reset, Surroundings, Time};
 
 /// Interrupt numbers of the emulator library.
@@ -46,6 +47,8 @@ pub struct Setup {
     pub surroundings: Surroundings,
     /// Serial line to the host.
     pub cable: Cable,
+    /// CAN bus.
+    pub can: CanCable,
     /// Cost of an instruction [thousandths of a cycle].
     pub cost: u64,
 }
@@ -69,6 +72,7 @@ impl Board<'_> {
             return Err(format!("the image is longer than the flash of {}", chip.name));
         }
         let mut machine = Machine::new(chip, setup.surroundings, setup.cable, setup.cost);
+        machine.wires.can = CanBus::new(setup.can);
         machine.wires.image_end = image_end;
         let mut core = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, machine).map_err(failed)?;
         let model = if is_m7 { ArmCpuModel::CORTEX_M7 } else { ArmCpuModel::CORTEX_M4 };
@@ -287,6 +291,9 @@ impl Board<'_> {
             }
         }
         let base = if self.machine().scs.running() == 0 { TO_THREAD } else { TO_HANDLER };
+        if exception == SYSTICK {
+            self.core.get_data_mut().wires.can.ticks += 1;
+        }
         let vector = self.core.get_data_mut().scs.enter(exception);
         if !(flash::BASE..self.machine().wires.image_end).contains(&vector) {
             let what =

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use board::device::board::Board;
-use board::device::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, SPI_RATE};
+use board::device::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, DriveOnBus, SPI_RATE};
 use board::device::tick_time;
 use board::device::toolchain::Toolchain;
 use link::messages::Role;
+use virtual_drive::maker::{MOTEUS, ODRIVE3};
 
 use crate::image::Image;
 
@@ -24,6 +25,8 @@ pub enum Work {
     Loop,
     /// SPI slave.
     SpiSlave,
+    /// Drive on CAN.
+    Drive,
 }
 
 impl Work {
@@ -34,8 +37,16 @@ impl Work {
             Self::Observer => "observer",
             Self::Loop => "loop",
             Self::SpiSlave => "slave on SPI",
+            Self::Drive => "drive on CAN",
         }
     }
+}
+
+/// Drive that the image of a board is: that of a board with CAN FD is a moteus, that of another one an ODrive 3.6.
+pub fn drive_of(board: &Board) -> Option<DriveOnBus> {
+    let can = board.description.can?;
+    let maker = if can.data_bitrate.is_some() { MOTEUS } else { ODRIVE3 };
+    Some(DriveOnBus { maker, id: 1 })
 }
 
 /// Images by board and kind.
@@ -67,6 +78,10 @@ impl Images {
                     .map_err(|_| "a preset with problems")?
                     .parameters;
                 role(Role::Loop, tick_time::default_control_rate(&parameters, board, Role::Loop))
+            }
+            Work::Drive => {
+                let drive = drive_of(board).ok_or("the board is no drive")?;
+                image::build_drive(&self.toolchain, &joint, board, &drive, CONTROL_RATE, false, &quiet)
             }
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, false, &quiet),
         };

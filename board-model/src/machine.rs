@@ -182,8 +182,12 @@ impl Machine {
         }
         self.scs.advance(self.cycles, &mut self.wires);
         let events = self.chip.peripherals.iter().filter_map(|placed| placed.peripheral.next_event());
-        let next =
-            events.chain(self.wires.line.arrives).chain(self.wires.master.next).min().map(|time| self.cycle_at(time));
+        let next = events
+            .chain(self.wires.line.arrives)
+            .chain(self.wires.master.next)
+            .chain(self.wires.can.next_event())
+            .min()
+            .map(|time| self.cycle_at(time));
         let never = self.cycles + self.rate;
         self.deadline = [next, self.scs.next_event()].into_iter().flatten().min().unwrap_or(never).max(self.cycles + 1);
         self.attention = false;

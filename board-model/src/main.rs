@@ -7,13 +7,17 @@ use std::time::Instant;
 
 use board::device::board::Board;
 use board_model::boards::{Subject, USUAL_COST, usual_surroundings};
+use board_model::can_twin::DriveOf;
 use board_model::checks::Named;
 use board_model::image::Image;
-use board_model::images::Images;
+use board_model::images::{Images, JOINT};
 use board_model::planted::{self, Mistake};
+use board_model::port::Paths;
 use board_model::wires::Surroundings;
 use board_model::{boards, checks, known, port};
 use clap::{Parser, Subcommand};
+use joint_file::named;
+use model_core::gears::design::Processor;
 
 #[derive(Parser)]
 #[command(version, about = "STM32F405, STM32G474, STM32G431 and STM32H743 at the level of registers")]
@@ -37,6 +41,15 @@ enum Command {
         /// Thousandths of a cycle that an instruction takes
         #[arg(long, value_name = "N", default_value_t = USUAL_COST)]
         cost: u64,
+        /// Ends when the client of the CAN bus has left, and compares every frame with the twin of the image's drive
+        #[arg(long, value_name = "MAKER")]
+        twin: Option<String>,
+        /// Joint of the image, for the twin: a preset or a file
+        #[arg(long, value_name = "FILE", default_value = JOINT)]
+        joint: PathBuf,
+        /// Identifier of the image's drive, for the twin
+        #[arg(long, value_name = "ID", default_value_t = 1)]
+        id: u8,
     },
     /// Runs every check on every board
     Check {
@@ -54,7 +67,9 @@ enum Command {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Run { image, board, source, cost } => run(&image, board, source, cost),
+        Command::Run { image, board, source, cost, twin, joint, id } => {
+            run(&image, board, source, cost, twin.map(|maker| Twin { maker, joint, id }).as_ref())
+        }
         Command::Check { board, only, full } => check(board, only.as_deref(), full),
     };
     match outcome {
@@ -66,8 +81,15 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a board at a port; violations are printed as they occur.
-fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(), String> {
+/// Drive of an image, to be compared with its twin.
+struct Twin {
+    maker: String,
+    joint: PathBuf,
+    id: u8,
+}
+
+/// Runs a board at its ports; violations are printed as they occur.
+fn run(image: &Path, board: Board, source: Option<u64>, cost: u64, twin: Option<&Twin>) -> Result<(), String> {
     let usual = usual_surroundings(&board);
     let surroundings = match source {
         None => usual,
@@ -76,17 +98,36 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(),
             Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate), ..usual }
         }
     };
-    let name = board.argument.clone();
+    let (name, processor) = (board.argument.clone(), board.processor());
     let subject = Subject { board, image: Image::read(image)?, tampers: &[] };
     let mut board = subject.start_at(surroundings, cost)?;
     let mut told = 0;
-    let opened = |path: &str| println!("{} at {path}: give the host's commands --port {path} --board {name}", name);
-    port::serve(&mut board, opened, |board| {
+    let opened = |paths: &Paths<'_>| {
+        let line = paths.line;
+        println!("{name} at {line}: give the host's commands --port {line} --board {name}");
+        if let Some(can) = paths.can {
+            println!("CAN bus at {can}: slcan");
+        }
+    };
+    port::serve(&mut board, twin.is_some(), opened, |board| {
         for violation in &board.machine().wires.violations.all()[told..] {
             eprintln!("{violation}, in {}", board.image.function(violation.pc));
         }
         told = board.machine().wires.violations.all().len();
-    })
+    })?;
+    checks::clean(&board)?;
+    twin.map_or(Ok(()), |twin| compare(&board, processor, twin))
+}
+
+/// Compares the frames of a session with the twin's.
+fn compare(board: &board_model::cpu::Board<'_>, processor: Processor, twin: &Twin) -> Result<(), String> {
+    let joint = &named::load(&twin.joint).map_err(|failure| failure.to_string())?.file;
+    let drive = DriveOf { maker: &twin.maker, id: twin.id, joint, processor };
+    let bus = &board.machine().wires.can;
+    let count = drive.compare(&bus.handed, &bus.taken, bus.ticks)?;
+    let (taken, ticks, lost) = (bus.taken.len(), bus.ticks, bus.overruns);
+    println!("ok       {taken} frames to the image in {ticks} ticks, {lost} lost; its {count} frames are the twin's");
+    Ok(())
 }
 
 /// Runs all checks, even after a failure, and counts the failures.

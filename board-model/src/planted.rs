@@ -4,9 +4,9 @@
 use board::device::board::Chip;
 use board::device::board::Chip::{Stm32f405, Stm32g431, Stm32g474, Stm32h743};
 
-use crate::checks::{Check, boot, bootloader, load, memory, outputs, pins, spi};
+use crate::checks::{Check, boot, bootloader, can, load, memory, outputs, pins, spi};
 use crate::images::Work;
-use crate::images::Work::{Observer, Plant, SpiSlave};
+use crate::images::Work::{Drive, Observer, Plant, SpiSlave};
 use crate::tamper::How::{Clear, Field, Omit, OmitValue, Set, Swap};
 use crate::tamper::{How, Tamper};
 
@@ -320,6 +320,113 @@ pub const ALL: &[Mistake] = &[
         "flash: the second bank of a chip with one",
     )
     .short(),
+    // CAN.
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_641c, Field(0x3ff, 5))],
+        "CAN: prescaler 6 for 3, half the bit rate",
+    )
+    .short(),
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_641c, Field(0x7f_0000, 4 << 16 | 7 << 20))],
+        "CAN: the sample point in the middle of a bit",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_6414, Clear(1 << 1))],
+        "CAN: received frames raise no interrupt",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_640c, Clear(1 << 5))],
+        "CAN: the FIFO is never released",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_6400, Clear(1 << 2))],
+        "CAN: frames are sent in the order of their identifiers",
+    )
+    .short(),
+    Mistake::new(Stm32f405, Drive, can::recovers, &[at(0x4000_6400, Clear(1 << 6))], "CAN: bus-off for ever").short(),
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_6600, Clear(1))],
+        "CAN: filters are set up while they are in force",
+    ),
+    Mistake::new(Stm32f405, Drive, can::equals_twin, &[at(0x4000_661c, Omit)], "CAN: no filter is active"),
+    Mistake::new(Stm32f405, Drive, can::equals_twin, &[at(0x4002_3840, Clear(1 << 25))], "CAN: its clock is off"),
+    Mistake::new(
+        Stm32f405,
+        Drive,
+        can::equals_twin,
+        &[at(0x4002_0424, Swap(0xf0, 0x90, 0x80))],
+        "CAN: PB9 has the wrong function",
+    ),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_641c, Field(0x1ff_0000, 1 << 16))],
+        "FDCAN: prescaler 2 for 1, half the bit rate",
+    ),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_640c, Clear(1 << 23))],
+        "FDCAN: no compensation of the transceiver's delay",
+    )
+    .short(),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_6418, Set(1 << 13))],
+        "FDCAN: edge filtering, which the errata forbid",
+    )
+    .short(),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_6418, Set(1 << 6))],
+        "FDCAN: no retransmission, which the errata forbid",
+    ),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_6494, Omit)],
+        "FDCAN: received elements are never acknowledged",
+    ),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::hears_in_a_flood,
+        &[at(0x4000_6450, Omit)],
+        "FDCAN: flags of interrupts are never cleared",
+    ),
+    Mistake::new(Stm32g474, Drive, can::equals_twin, &[at(0x4002_1088, Omit)], "FDCAN: clocked by the crystal").short(),
+    Mistake::new(
+        Stm32g474,
+        Drive,
+        can::recovers,
+        &[at(0x4000_6418, OmitValue(0x300))],
+        "FDCAN: the initialisation never ends",
+    ),
     // STM32G431.
     Mistake::new(
         Stm32g431,

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::as5047p::As5047p;
+use crate::can_bus::{CanBus, CanCable};
 use crate::violation::Violations;
 
 /// Time in femtoseconds, in which a cycle of every clock is an integer to nine digits.
@@ -246,6 +247,8 @@ pub struct Wires {
     pub requests: BTreeSet<Request>,
     /// Requests served by an enabled channel.
     pub served: BTreeSet<Request>,
+    /// CAN bus.
+    pub can: CanBus,
     /// External SPI master.
     pub master: Master,
     /// External SPI slave.
@@ -311,6 +314,7 @@ impl Wires {
             line_ports: ['A'; 16],
             requests: BTreeSet::new(),
             served: BTreeSet::new(),
+            can: CanBus::new(CanCable::default()),
             master: Master::default(),
             encoder: None,
             width: 4,

@@ -147,6 +147,11 @@ impl Ratio {
         Self { numerator: best.0 as u16, denominator: best.1 as u16 }
     }
 
+    /// Fraction of two positive numbers as they are; a zero gives 1.
+    pub const fn of(numerator: u16, denominator: u16) -> Self {
+        if numerator == 0 || denominator == 0 { Self::ONE } else { Self { numerator, denominator } }
+    }
+
     /// Numerator and denominator.
     pub fn parts(self) -> (u16, u16) {
         (self.numerator, self.denominator)

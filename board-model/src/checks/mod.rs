@@ -4,6 +4,8 @@
 pub mod bits;
 pub mod boot;
 pub mod bootloader;
+pub mod can;
+mod can_client;
 pub mod encoder;
 pub mod load;
 pub mod memory;
@@ -96,6 +98,9 @@ pub const ALL: &[Named] = &[
         run: encoder::is_read,
         is_long: false,
     },
+    short("answers a client as the host's twin does, in every frame", &[Work::Drive], can::equals_twin),
+    short("loses no frame of a full bus", &[Work::Drive], can::hears_in_a_flood),
+    short("comes back after bus-off, a lonely bus and a held one", &[Work::Drive], can::recovers),
     short("power cut at some operations of flash", &[Work::Observer], memory::survives_some_cuts),
     Named {
         name: "power cut at every operation of flash",
@@ -113,6 +118,8 @@ fn has_image(board: &Described, work: Work) -> bool {
         Work::Plant => true,
         Work::Observer | Work::Loop => board.chip() != Chip::Stm32g431,
         Work::SpiSlave => board.has_spi_slave(),
+        // The chips whose CAN is modelled.
+        Work::Drive => can::is_for(board),
     }
 }
 

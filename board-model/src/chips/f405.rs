@@ -2,6 +2,7 @@
 
 use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
+use crate::peripherals::bxcan::{self, Bxcan};
 use crate::peripherals::dbgmcu::Dbgmcu;
 use crate::peripherals::dma_stream::DmaStreams;
 use crate::peripherals::exti::Exti;
@@ -74,6 +75,14 @@ const SPI1: spi::Place = spi::Place {
     pins: [(Pin('A', 4), 5), (Pin('A', 5), 5), (Pin('A', 6), 5), (Pin('A', 7), 5)],
 };
 
+/// Same data sheet, table 9: both CAN are function 9.
+const CAN1: bxcan::Place = bxcan::Place {
+    number: 1,
+    interrupts: [19, 20, 21, 22],
+    send: &[(Pin('A', 12), 9), (Pin('B', 9), 9), (Pin('D', 1), 9)],
+    receive: &[(Pin('A', 11), 9), (Pin('B', 8), 9), (Pin('D', 0), 9)],
+};
+
 /// RM0090 19.5: HSE_RTC is input 2.
 const TIM11: tim::Place = tim::Place { map: &tim::F4, interrupt: 26, selection: (0x50, 2) };
 
@@ -96,6 +105,7 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "DMA1", 0x4002_6000, (AHB1ENR, 21), Some((AHB1RSTR, 21)), Box::new(DmaStreams::new(1))),
         gated(RM, "DMA2", 0x4002_6400, (AHB1ENR, 22), Some((AHB1RSTR, 22)), Box::new(DmaStreams::new(2))),
         gated(RM, "TIM11", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM11))),
+        gated(RM, "CAN1", 0x4000_6400, (APB1ENR, 25), Some((APB1RSTR, 25)), Box::new(Bxcan::new(CAN1))),
         gated(RM, "SPI1", 0x4001_3000, (APB2ENR, 12), Some((APB2RSTR, 12)), Box::new(Spi::old(SPI1))),
     ];
     let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI"];

@@ -6,6 +6,7 @@ use crate::peripherals::dbgmcu::Dbgmcu;
 use crate::peripherals::dma_channel::DmaChannels;
 use crate::peripherals::dmamux::DmaMux;
 use crate::peripherals::exti::Exti;
+use crate::peripherals::fdcan::{self, Fdcan};
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
 use crate::peripherals::spi::{self, Spi};
@@ -13,7 +14,7 @@ use crate::peripherals::syscfg::Syscfg;
 use crate::peripherals::tim::{self, Timer};
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_g4, pwr_g4, rcc_g4};
-use crate::wires::Pin;
+use crate::wires::{Gate, Pin};
 
 const AHB1ENR: u32 = 0x48;
 const AHB1RSTR: u32 = 0x28;
@@ -39,6 +40,17 @@ const USART1: Place = Place {
     send: &[(Pin('A', 9), 7), (Pin('B', 6), 7), (Pin('C', 4), 7), (Pin('E', 0), 7), (Pin('G', 9), 7)],
     receive: &[(Pin('A', 10), 7), (Pin('B', 7), 7), (Pin('C', 5), 7), (Pin('E', 1), 7)],
 };
+/// Data sheet DS12288, table 13: function 9. RM0440 2.2.2 has the message RAM, 7.4.27 the clock.
+const FDCAN1: fdcan::Place = fdcan::Place {
+    number: 1,
+    ram: 0x4000_a400,
+    interrupt: 21,
+    clock: Gate { offset: APB1ENR1, bit: 25 },
+    selection: (0x88, 24),
+    send: &[(Pin('A', 12), 9), (Pin('B', 9), 9), (Pin('D', 1), 9)],
+    receive: &[(Pin('A', 11), 9), (Pin('B', 8), 9), (Pin('D', 0), 9)],
+};
+
 const USART2: Place = Place {
     number: 2,
     interrupt: 38,
@@ -107,6 +119,7 @@ pub(super) fn peripherals(Parts { rcc, flash, dbgmcu, dma, dmamux }: Parts) -> V
         gated(RM, "USART1", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Usart::new(USART1, 8))),
         gated(RM, "USART2", 0x4000_4400, (APB1ENR1, 17), Some((APB1RSTR1, 17)), Box::new(Usart::new(USART2, 8))),
         gated(RM, "USART3", 0x4000_4800, (APB1ENR1, 18), Some((APB1RSTR1, 18)), Box::new(Usart::new(USART3, 8))),
+        gated(RM, "FDCAN1", 0x4000_6400, (APB1ENR1, 25), Some((APB1RSTR1, 25)), Box::new(Fdcan::new(FDCAN1))),
         gated(RM, "TIM16", 0x4001_4400, (APB2ENR, 17), Some((APB2RSTR, 17)), Box::new(Timer::new(TIM16))),
         gated(RM, "TIM17", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM17))),
         gated(RM, "DMA1", 0x4002_0000, (AHB1ENR, 0), Some((AHB1RSTR, 0)), Box::new(dma)),

@@ -1,11 +1,14 @@
 //! Peripherals of the chips, each by its chapter of the reference manual.
 
+pub mod bxcan;
+pub mod can_node;
 pub mod dbgmcu;
 pub mod dma;
 pub mod dma_channel;
 pub mod dma_stream;
 pub mod dmamux;
 pub mod exti;
+pub mod fdcan;
 pub mod flash;
 pub mod flash_f4;
 pub mod flash_g4;

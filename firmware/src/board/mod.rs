@@ -3,11 +3,17 @@
 //! (`description`).
 
 mod bounded_wait;
+#[cfg(all(family = "stm32f4", has_can))]
+mod bxcan;
+#[cfg(has_can)]
+mod can_unit;
 mod chip;
 mod description;
 #[cfg(has_spi_slave)]
 pub mod dma_slave;
 mod external_clock;
+#[cfg(all(family = "stm32g4", has_can))]
+mod fdcan;
 pub mod flash_slots;
 #[cfg(not(family = "stm32h7"))]
 pub mod flash_unit;
@@ -18,6 +24,8 @@ mod serial_unit;
 mod start;
 mod watchdog;
 
+#[cfg(has_can)]
+pub use can_unit::{CanHalves, CanLine};
 pub use chip::{Chip, Parts};
 pub use description::{CORE_RATE, NAME};
 pub use gpio::{Output, Pin};

@@ -3,6 +3,7 @@
 use joint_file::{Problem, Source};
 use model_core::gears::design::Processor;
 
+use crate::bit_timing::BitTiming;
 use crate::chip::{Chip, Slot};
 use crate::pin::{Alternate, Pin};
 use crate::pll::Plls;
@@ -39,7 +40,7 @@ pub struct Board {
     pub serial: Serial,
     /// SPI line to a motor controller, the board as slave.
     pub spi_slave: Option<SpiSlave>,
-    /// CAN line, which no image uses yet.
+    /// CAN line of the role `drive`.
     pub can: Option<Can>,
     /// Encoders at motor and output, which no image reads yet.
     pub encoders: [Option<Encoder>; 2],
@@ -111,12 +112,57 @@ pub struct SpiSlave {
 /// CAN line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Can {
-    /// Peripheral, such as CAN1.
+    /// Peripheral, such as CAN1 or FDCAN1.
     pub unit: &'static str,
+    /// Clock of the bit timing while the PLL runs [Hz].
+    pub clock: u32,
     /// Data to the transceiver.
-    pub send: Pin,
+    pub send: Alternate,
     /// Data from the transceiver.
-    pub receive: Pin,
+    pub receive: Alternate,
+    /// Bit rate [bit/s].
+    pub bitrate: u32,
+    /// Second bit rate, for the data of CAN FD frames [bit/s].
+    pub data_bitrate: Option<u32>,
+    /// Timing of the bit rate.
+    pub timing: BitTiming,
+    /// Timing of the second bit rate.
+    pub data_timing: Option<BitTiming>,
+    /// Transceiver between the pins and the bus.
+    pub transceiver: Transceiver,
+}
+
+/// Transceiver of a CAN line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Transceiver {
+    /// The board has one.
+    OnBoard,
+    /// The board has none.
+    None,
+    /// The file does not say.
+    Unknown,
+}
+
+impl Can {
+    /// Returns whether the peripheral has frames of CAN FD.
+    pub fn is_flexible(&self) -> bool {
+        self.unit.starts_with("FD")
+    }
+
+    /// Sentence about a transceiver that has to be added; `None` if the board has one.
+    pub fn missing_transceiver(&self) -> Option<String> {
+        let (send, receive) = (self.send.pin, self.receive.pin);
+        let fast = if self.data_bitrate.is_some() { " for CAN FD" } else { "" };
+        let add = format!("connect one{fast} with 3.3 V levels, its TXD to {send} and its RXD to {receive}");
+        match self.transceiver {
+            Transceiver::OnBoard => None,
+            Transceiver::None => Some(format!("the board has no CAN transceiver: {add}")),
+            Transceiver::Unknown => Some(format!(
+                "the board's file does not say that there is a CAN transceiver: if there is none, {add}; if there is one, \
+                 write `transceiver = \"yes\"`"
+            )),
+        }
+    }
 }
 
 /// An encoder.
@@ -231,6 +277,9 @@ impl Board {
                 ("spi_slave.in", input.pin),
             ]);
         }
+        if let Some(Can { send, receive, .. }) = self.can {
+            pins.extend([("can.send", send.pin), ("can.receive", receive.pin)]);
+        }
         pins.extend(self.supply.map(|output| ("supply.pin", output.pin)));
         pins.extend(self.enable.map(|output| ("enable.pin", output.pin)));
         pins.extend(self.light.map(|output| ("light.pin", output.pin)));
@@ -240,9 +289,6 @@ impl Board {
     /// Pins of lines that no image uses yet, with their keys. The firmware leaves them in their reset state.
     pub fn unused_line_pins(&self) -> Vec<(&'static str, Pin)> {
         let mut pins = Vec::new();
-        if let Some(Can { send, receive, .. }) = self.can {
-            pins.extend([("can.send", send), ("can.receive", receive)]);
-        }
         for (encoder, [select, clock, out, input, a, b, index]) in self.encoders.iter().zip(ENCODER_KEYS) {
             match encoder.map(|encoder| encoder.pins) {
                 Some(EncoderPins::Spi { select: chosen, clock: clocked, out: answered, input: asked }) => {

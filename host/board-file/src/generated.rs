@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::bit_timing::BitTiming;
 use crate::board::{Board, ExternalClock, Level, Output, RAM_START};
 use crate::chip::Chip;
 use crate::pin::Alternate;
@@ -78,6 +79,22 @@ pub fn rust_source(board: &Board) -> String {
                 .map(|slave| format!("[{}]", [slave.select, slave.clock, slave.out, slave.input].map(pin).join(", "))),
         ),
     );
+    constant("Pins of the CAN line: send, receive.", "CAN", "Option<[(u8, u8, u8); 2]>", {
+        option_source(board.can.map(|can| format!("[{}, {}]", pin(can.send), pin(can.receive))))
+    });
+    let timing = |BitTiming { prescaler, before, after, jump }| format!("({prescaler}, {before}, {after}, {jump})");
+    constant(
+        "Bit timing of CAN: cycles of a quantum, quanta before and after the sample point, jump width.",
+        "CAN_TIMING",
+        "Option<(u32, u32, u32, u32)>",
+        option_source(board.can.map(|can| timing(can.timing))),
+    );
+    constant(
+        "Timing of the second bit rate of CAN, in the same form.",
+        "CAN_DATA_TIMING",
+        "Option<(u32, u32, u32, u32)>",
+        option_source(board.can.and_then(|can| can.data_timing).map(timing)),
+    );
     constant("Output that holds the supply: port, number, true if high is on.", "SUPPLY", OUTPUT, output(board.supply));
     constant("Output that switches the motor on, in the same form.", "ENABLE", OUTPUT, output(board.enable));
     constant("Status light, in the same form.", "LIGHT", OUTPUT, output(board.light));
@@ -143,6 +160,9 @@ pub fn cfgs(board: &Board) -> Vec<(&'static str, String)> {
         // External interrupt lines are numbered like the pins, whatever the port.
         cfgs.push(("select_line", slave.select.pin.number.to_string()));
     }
+    if let Some(can) = &board.can {
+        cfgs.push(("can", can.unit.to_lowercase()));
+    }
     cfgs
 }
 
@@ -159,6 +179,7 @@ pub fn all_cfgs() -> Vec<(&'static str, Vec<String>)> {
         ("family", names(|chip| vec![chip.family()])),
         ("serial", names(|chip| chip.facts().serial.iter().map(|unit| unit.name).collect())),
         ("spi_slave", names(|chip| chip.facts().spi.unwrap_or_default().iter().map(|unit| unit.name).collect())),
+        ("can", names(|chip| chip.facts().can.iter().map(|unit| unit.name).collect())),
         ("select_line", (0..16).map(|line| line.to_string()).collect()),
     ]
 }

@@ -42,6 +42,9 @@ pub(crate) const CLOCKS: &[&str] = &["crystal", "signal", "internal"];
 /// Levels of a pin.
 pub(crate) const LEVELS: &[&str] = &["high", "low"];
 
+/// Answers to a question.
+pub(crate) const ANSWERS: &[&str] = &["yes", "no"];
+
 /// All keys, in the order of the documentation.
 pub(crate) const KEYS: &[Key] = &[
     key("", "name", Text, "name of up to 16 lower case letters, digits, dots and hyphens: name = \"my-board\""),
@@ -56,7 +59,7 @@ pub(crate) const KEYS: &[Key] = &[
         Section,
         "SPI line to a motor controller, the board as slave; leave the section out if there is none",
     ),
-    key("", "can", Section, "CAN line, which no image uses yet; leave the section out if there is none"),
+    key("", "can", Section, "CAN line of the role drive; leave the section out if there is none"),
     key(
         "",
         "encoder",
@@ -99,10 +102,24 @@ pub(crate) const KEYS: &[Key] = &[
     key("spi_slave", "clock", Pin, "clock of the master (SCK)"),
     key("spi_slave", "out", Pin, "data to the master (MISO)"),
     key("spi_slave", "in", Pin, "data from the master (MOSI)"),
-    // Lines that no image uses yet
+    // CAN
     key("can", "unit", Text, "peripheral of the pins, such as \"CAN1\""),
     key("can", "send", Pin, "data to the transceiver"),
     key("can", "receive", Pin, "data from the transceiver"),
+    key("can", "bitrate", Whole(10_000, 1_000_000), "bit rate of the bus [bit/s]; optional, 1_000_000 without it"),
+    key(
+        "can",
+        "data_bitrate",
+        Whole(10_000, 8_000_000),
+        "second bit rate, for the data of CAN FD frames [bit/s]; optional; not with classical CAN",
+    ),
+    key(
+        "can",
+        "transceiver",
+        Choice(ANSWERS),
+        "yes if the board has a transceiver between these pins and the bus; optional: without it, builds remind of it",
+    ),
+    // Lines that no image uses yet
     key("encoder", "motor", Section, "encoder at the motor: unit and pins"),
     key("encoder", "output", Section, "encoder at the joint's output: unit and pins"),
     key(

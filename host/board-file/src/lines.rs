@@ -1,30 +1,16 @@
-//! Lines of a board that no image uses yet: CAN, and the encoders of motor and output. Their pins are checked against
-//! the chip and against all other uses, so that they stay reserved; the firmware leaves them in their reset state.
+//! Encoders of motor and output, which no image reads yet. Their pins are checked against the chip and against all
+//! other uses, so that they stay reserved; the firmware leaves them in their reset state.
 
 use joint_file::wording::listed;
 
-use crate::board::{Can, Encoder, EncoderPins};
-use crate::chip::{CanUnit, Part, TimerUnit};
-use crate::pin::Pin;
+use crate::board::{Encoder, EncoderPins};
+use crate::chip::{Part, TimerUnit};
 use crate::pins::{Pins, report_unknown_unit};
 use crate::section::Section;
 
 /// Keys of an SPI encoder, and of a pulse encoder.
 const SPI_KEYS: [&str; 4] = ["select", "clock", "out", "in"];
 const PULSE_KEYS: [&str; 3] = ["a", "b", "index"];
-
-pub(crate) fn read_can(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<Can> {
-    let name = section.required("unit", Section::text_with_source);
-    let unit = name.zip(part).and_then(|(name, part)| {
-        let all = part.chip.facts().can;
-        let units: Vec<&str> = all.iter().map(|unit| unit.name).collect();
-        all.iter().find(|unit| unit.name == name).or_else(|| report_unknown_unit(section, &name, part, &units, None))
-    });
-    let unit_pins = |list: fn(&CanUnit) -> &'static [Pin]| unit.map(|unit| (unit.name, list(unit)));
-    let send = pins.claim_line_pin(section, "send", unit_pins(|unit| unit.send));
-    let receive = pins.claim_line_pin(section, "receive", unit_pins(|unit| unit.receive));
-    Some(Can { unit: unit?.name, send: send?, receive: receive? })
-}
 
 /// Reads both encoders; each may be left out. Returns `None` if a stated encoder is wrong.
 pub(crate) fn read_encoders(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<[Option<Encoder>; 2]> {

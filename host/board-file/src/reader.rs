@@ -5,6 +5,7 @@ use joint_file::{Notes, Problems};
 use toml::de::DeTable;
 
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
+use crate::can;
 use crate::chip::{Chip, OTHER_CHIPS, Part, SerialUnit, SpiUnit};
 use crate::lines;
 use crate::pins::{Pins, report_unknown_unit};
@@ -55,7 +56,7 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
     let pins = Pins::new(part, clock);
     let serial = top.required_section("serial").and_then(|section| read_serial(&section, part, &pins));
     let spi_slave = optional(top, "spi_slave", |section| read_spi_slave(section, part, &pins));
-    let can = optional(top, "can", |section| lines::read_can(section, part, &pins));
+    let can = optional(top, "can", |section| can::read(section, part, &pins));
     let encoders = optional(top, "encoder", |section| lines::read_encoders(section, part, &pins));
     let supply = optional(top, "supply", |section| read_output(section, &pins));
     let enable = optional(top, "enable", |section| read_output(section, &pins));

@@ -18,6 +18,7 @@ use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
+use virtual_drive::maker::{MOTEUS, ODRIVE3};
 
 /// Runs all checks; the first failure ends them.
 pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
@@ -60,6 +61,17 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             let bytes = built.flash_bytes;
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
+        }
+        if is_first && board.description.can.is_some() && board.chip().has_can() && image::has_room_for_all(board) {
+            progress.stage("building the image of a drive on CAN");
+            let joint = image::preset_file("q1");
+            let maker = if board.description.can.is_some_and(|can| can.is_flexible()) { MOTEUS } else { ODRIVE3 };
+            let drive = image::DriveOnBus { maker, id: 1 };
+            let built = image::build_drive(&toolchain, &joint, board, &drive, image::CONTROL_RATE, false, &say)?;
+            sizes::check(board.chip(), "drive", &built)?;
+            let bytes = built.flash_bytes;
+            progress.clear();
+            output::print(&format!("ok       image of a drive on CAN for {}: {bytes} B of flash\n", board.name()))?;
         }
         if !is_first {
             continue;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use board::device::board::Board as TargetBoard;
 use board::device::prediction::ORIGIN;
-use board_file::{Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
+use board_file::{BitTiming, Board, Can, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
 use clap::ValueEnum;
 use parameters::JointParameters;
 use report::document::{Sheet, terminal};
@@ -80,6 +80,9 @@ fn add_roles(page: &mut Sheet, board: &TargetBoard, joint: &JointParameters) {
             ImageRole::SpiObserver if !board.has_spi_slave() => {
                 "not on this board: its file has no [spi_slave]".to_owned()
             }
+            ImageRole::Drive if board.description.can.is_none() => {
+                "not on this board: its file has no [can]".to_owned()
+            }
             _ => role.predict(joint, board, role.default_rate(joint, board)).to_string(),
         };
         page.row(value.get_name(), verdict);
@@ -124,6 +127,7 @@ fn board_page(board: &Board) -> Sheet {
             }
         },
     );
+    can_rows(&mut page, board.can.as_ref());
     let without_use = board.unused_line_pins();
     if !without_use.is_empty() {
         page.heading("Not used by any image");
@@ -136,6 +140,29 @@ fn board_page(board: &Board) -> Sheet {
         page.row(&Pin::to_string(pin), what);
     }
     page
+}
+
+/// Pins, rates and transceiver of the CAN line.
+fn can_rows(page: &mut Sheet, can: Option<&Can>) {
+    let Some(can) = can else {
+        page.row("CAN", "none");
+        return;
+    };
+    page.row("CAN", format!("{}: {} out, {} in", can.unit, can.send.pin, can.receive.pin));
+    page.row("CAN bit rate", bit_rate(can.bitrate, &can.timing));
+    if let Some((rate, timing)) = can.data_bitrate.zip(can.data_timing) {
+        page.row("CAN data bit rate", bit_rate(rate, &timing));
+    }
+    page.row("CAN transceiver", can.missing_transceiver().unwrap_or_else(|| "on the board".to_owned()));
+}
+
+fn bit_rate(rate: u32, timing: &BitTiming) -> String {
+    let BitTiming { prescaler, before, after, .. } = timing;
+    let point = f64::from(timing.sample_point()) / 10.0;
+    format!(
+        "{} kbit/s: prescaler {prescaler}, segments {before} and {after}, sampled at {point} %",
+        f64::from(rate) / 1e3
+    )
 }
 
 fn output(output: Option<Output>) -> String {

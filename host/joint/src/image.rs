@@ -15,12 +15,15 @@ use parameters::JointParameters;
 use report::failure::Outcome;
 use report::progress::Progress;
 use report::{interruption, output};
+use virtual_drive::maker::{MOTEUS, NAMES, Name, ODRIVE3};
 
 /// Arguments of `joint image`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   joint image                                 joint q1 for the olimex-h405, which the emulator stands for
   joint image --role observer                 observer and compensation for it, beside a motor controller
+  joint image --role drive --board odrive-3.6              the joint behind an ODrive on the board's CAN bus
+  joint image --role drive --drive moteus --id 2 --board moteus-r4
   joint image --role spi-observer --board nucleo-g474re    the same as a slave on that controller's SPI
   joint image joints/l1.toml --board nucleo-h743zi
   joint image --board my_board.toml           for a board of your own")]
@@ -46,6 +49,12 @@ pub struct Image {
     /// else 10000, or the next lower rate that the chip has time for]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
+    /// Maker of the drive in role drive [default: odrive3, or moteus where the board has CAN FD]
+    #[arg(long, value_name = "MAKER", value_parser = maker)]
+    drive: Option<Name>,
+    /// Identifier of the drive on its bus in role drive
+    #[arg(long, value_name = "ID", default_value_t = 1)]
+    id: u8,
     /// Builds even if the worst-case tick exceeds the period; the board reports `forced` in its identity
     #[arg(long)]
     force: bool,
@@ -63,15 +72,24 @@ pub enum ImageRole {
     /// Observer and compensation as a slave on SPI beside a motor controller on another chip; for boards whose file has
     /// [spi_slave]
     SpiObserver,
+    /// Joint behind a finished drive on CAN, for clients of its maker; for boards whose file has [can]
+    Drive,
+}
+
+/// Maker of a drive by its word.
+fn maker(word: &str) -> Result<Name, String> {
+    let known = NAMES.into_iter().find(|name| name.word == word);
+    known.ok_or_else(|| format!("write one of {}", NAMES.map(|name| name.word).join(", ")))
 }
 
 impl ImageRole {
-    /// Role in the protocol; a slave on SPI is an observer.
+    /// Role in the protocol, or the one with the longer tick: a slave on SPI is an observer.
     pub fn role(self) -> Role {
         match self {
             Self::Plant => Role::Plant,
             Self::Observer | Self::SpiObserver => Role::Observer,
-            Self::Loop => Role::Loop,
+            // The drive runs the joint of the loop.
+            Self::Loop | Self::Drive => Role::Loop,
         }
     }
 
@@ -81,6 +99,7 @@ impl ImageRole {
             Self::Plant => image::DEFAULT_TICK_RATE,
             Self::Observer | Self::Loop => tick_time::default_control_rate(joint, board, self.role()),
             Self::SpiObserver => image::SPI_RATE,
+            Self::Drive => image::CONTROL_RATE,
         }
     }
 
@@ -116,6 +135,12 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
         progress.stage("building the firmware");
         match role {
             ImageRole::SpiObserver => image::build_spi_slave(&toolchain, &file, board, rate, arguments.force, &say),
+            ImageRole::Drive => {
+                let has_data_rate = board.description.can.is_some_and(|can| can.data_bitrate.is_some());
+                let usual = if has_data_rate { MOTEUS } else { ODRIVE3 };
+                let drive = image::DriveOnBus { maker: arguments.drive.unwrap_or(usual), id: arguments.id };
+                image::build_drive(&toolchain, &file, board, &drive, rate, arguments.force, &say)
+            }
             _ => image::build_image(&toolchain, &file, board, role.role(), rate, arguments.force, &say),
         }
     });

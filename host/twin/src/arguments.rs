@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use board::device::board::Board;
 use clap::{Args, value_parser};
 use live::LiveOptions;
 use scenario::plant::PlantName;
 
 use crate::protocol::DriveName;
-use crate::wire::WireName;
+use wires::WireName;
 
 /// Arguments of `joint twin`.
 #[derive(Debug, Args)]
@@ -19,6 +20,8 @@ Examples:
   joint twin --drive moteus --id 1=q1 --id 2=k9.toml     two joints on one bus
   joint twin --drive odrive --lockstep 1 --seed 7        1 ms of the joint's time for each frame of the client
   joint twin --live                                      a page that shows the joint and commands it
+  joint twin --drive odrive3 --lockstep 1 --image odrive-3.6
+                                                         the frames of that image: joint image --role drive
   joint twin --control /tmp/q1.sock                      commands of the socket change load, backlash and faults
 
 docs/reference/twin.md describes clients, wires and the commands of the control socket, docs/reference/live.md the
@@ -60,6 +63,10 @@ pub struct Arguments {
     /// Model of the joint
     #[arg(long, value_enum, default_value = "reference")]
     pub plant: PlantName,
+    /// Joint and drive as the image of role `drive` for this board runs them, bit for bit: no noise, faults or seed
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse)]
+    #[arg(conflicts_with_all = ["plant", "seed", "compensation", "control"])]
+    pub image: Option<Board>,
     /// Observer and compensation of this project act in the drive, in place of its own law
     #[arg(long)]
     pub compensation: bool,

@@ -11,7 +11,7 @@ use scenario::rig::RunError;
 use crate::can::{ErrorState, Event, Medium, Rate};
 use crate::joint::Joint;
 use crate::protocol::Server;
-use crate::wire::Packet;
+use wires::Packet;
 
 /// Packets on a serial bus that one packet of the client or one period may cause. Drives whose answers answer each
 /// other would go on for ever. On a CAN bus that takes no time the later ones wait for the next period.

@@ -224,6 +224,13 @@ fn read(line: &str, bus: &Bus<'_>) -> Result<(Order, Vec<Fault>), Reply> {
             "leave it out",
         ));
     }
+    let wants_plant = order.load.is_some() || order.half_backlash.is_some() || order.fault.is_some();
+    if wants_plant && joints.iter().any(|joint| joint.is_of_image() && order.joint.is_none_or(|id| joint.id == id)) {
+        return Err(refused(
+            "the joint of an image keeps its load and backlash and has no faults",
+            "start the twin without --image for changes of the joint",
+        ));
+    }
     let faults = match &order.fault {
         Some(fault) => read_faults(&toml(fault)?).map_err(|problems| match problems.into_iter().next() {
             Some(problem) => refused(problem.message, problem.help),
@@ -269,11 +276,11 @@ fn apply(order: &Order, faults: &[Fault], bus: &mut Bus<'_>) -> Reply {
         }
         let joint = &mut bus.joints[index];
         let (now, seed) = (joint.time(), joint.seed());
-        if let Some(load) = order.load {
-            joint.rig().set_external_torque(load);
+        if let Some((rig, load)) = joint.rig().zip(order.load) {
+            rig.set_external_torque(load);
         }
-        if let Some(half_backlash) = order.half_backlash {
-            joint.rig().set_half_backlash(1e-6 * half_backlash);
+        if let Some((rig, half_backlash)) = joint.rig().zip(order.half_backlash) {
+            rig.set_half_backlash(1e-6 * half_backlash);
         }
         if let Some(supply) = order.supply {
             joint.power.supply_voltage = supply;
@@ -281,11 +288,13 @@ fn apply(order: &Order, faults: &[Fault], bus: &mut Bus<'_>) -> Reply {
         if let Some(temperature) = order.motor_temperature {
             joint.power.set_motor_temperature(temperature);
         }
-        if order.end_faults {
-            joint.rig().end_faults(now);
+        if let Some(rig) = joint.rig().filter(|_| order.end_faults) {
+            rig.end_faults(now);
         }
-        for fault in faults {
-            joint.rig().inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
+        if let Some(rig) = joint.rig() {
+            for fault in faults {
+                rig.inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
+            }
         }
         if order.clear_fault {
             joint.drive.clear_fault();

@@ -17,7 +17,7 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use crate::event::{ClientId, Event};
 use crate::gate::Gate;
 use crate::terminal;
-use crate::wire::{Packet, Received, Wire, WireName, wire};
+use wires::{Packet, Received, Wire, WireName, wire};
 
 /// Bytes that wait for a client whose line is full. The line itself holds 4 kB more.
 const MAX_BACKLOG: usize = 16 << 10;

@@ -3,13 +3,11 @@
 
 use std::path::Path;
 
-use drives::drive::{Feedback, Gains, Sensors, SetPoint, VirtualPower};
-use drives::turns::Ratio;
+use board::device::board::Board;
+use drives::drive::{Feedback, Sensors, SetPoint, VirtualPower};
 use drives::{Drive, Settings, Turns};
-use joint_file::sheet;
 use live::{Description, Sample};
 use model_core::compensation::{Compensation, Stage};
-use model_core::gears::Kinematics;
 use model_core::observer::{MAPPED, Observer, Samples, Source};
 use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
@@ -20,18 +18,13 @@ use scenario::plant::PlantName;
 use scenario::port::Translator;
 use scenario::rig::{Rig, RunError};
 use scenario::suite::{self, Choice, Test};
+use virtual_drive::DriveDesign;
 
+use crate::image::{ImageJoint, ImageTables};
 use crate::mapping;
 use crate::mode::{ActiveMode, Mode};
 use crate::protocol::{DriveName, Server};
-
-/// Bandwidth of the speed from the encoders, in a control period [rad]: a compromise of lag and quantisation.
-const ENCODER_BANDWIDTH_PERIODS: f32 = 0.2;
-/// Largest crossover of the speed loop with the rotor alone, as in the gap, over the bandwidth of its speed [-]: keeps
-/// 50 degrees of phase.
-const ROTOR_CROSSOVER_RATIO: f32 = 0.25;
-/// Largest bandwidth of the drive's position loop [rad/s]. Assumed: a drive that nobody tuned for the joint.
-const MAX_BANDWIDTH: f64 = 40.0;
+use crate::truth::Truth;
 
 /// Joint as it was asked for: its identifier on the bus, and its case.
 pub struct Prepared {
@@ -42,10 +35,11 @@ pub struct Prepared {
     test: Test,
     case: Case,
     designed: Option<Designed>,
+    image: Option<ImageTables>,
 }
 
 /// Choices that all joints share.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Choices {
     /// Drive.
     pub drive: DriveName,
@@ -59,6 +53,8 @@ pub struct Choices {
     pub is_calibrated: bool,
     /// Voltage of the supply [V].
     pub supply: f32,
+    /// Board whose image the joint is to equal; `None` for the plant.
+    pub image: Option<Board>,
 }
 
 /// Observer and compensation of a drive.
@@ -95,36 +91,28 @@ pub struct Joint<'d> {
     pub model: Option<String>,
     /// Supply and temperatures.
     pub power: VirtualPower,
-    rig: Rig,
-    translator: Translator,
-    compensated: Option<Compensated<'d>>,
+    plant: Plant<'d>,
     mode: Option<ActiveMode>,
     /// Planets, ratio and rated torque of the true joint.
     description: Description,
-    /// Angle zero of the joint on the scale of the raw output encoder [turns].
-    output_zero: f64,
     seed: u64,
 }
 
-/// True state of a joint, beside what its drive reports.
-#[derive(Debug, Clone, Copy)]
-pub struct Truth {
-    /// Angle of the link on the scale of the raw output encoder [rad].
-    pub link: f64,
-    /// Speed of the link [rad/s].
-    pub link_speed: f64,
-    /// Angle of the motor [rad].
-    pub motor: f64,
-    /// Gap coordinate [m].
-    pub gap: f64,
-    /// Half-backlash of every mesh [m].
-    pub half_backlash: f64,
-    /// Net force between the flanks at the motor's side [N].
-    pub mesh_force: f64,
-    /// Torque that brakes the link [N m].
-    pub load_torque: f64,
-    /// Torque in the air gap of the motor [N m].
-    pub motor_torque: f64,
+/// Joint in front of the drive.
+enum Plant<'d> {
+    /// Plant of a test with its faults.
+    Rig(Box<TestPlant<'d>>),
+    /// Joint of a firmware image.
+    Image(ImageJoint<'d>),
+}
+
+/// Plant of a test, and its way to observer and compensation.
+struct TestPlant<'d> {
+    rig: Rig,
+    translator: Translator,
+    compensated: Option<Compensated<'d>>,
+    /// Angle zero of the joint on the scale of the raw output encoder [turns].
+    output_zero: f64,
 }
 
 impl Prepared {
@@ -144,24 +132,37 @@ impl Prepared {
         };
         let case = Case::new(&test.file, &test.joint.text, choices.seed, test.motion.as_ref())?;
         let designed = choices.compensation.then(|| case.design(&test.file)).transpose()?;
-        Ok(Self { id, name: path.display().to_string(), test, case, designed })
+        let image = choices.image.as_ref().map(|board| ImageTables::new(&case.truth, board)).transpose()?;
+        Ok(Self { id, name: path.display().to_string(), test, case, designed, image })
     }
 
     /// Joint at rest before its first period.
     pub fn start(&self, choices: &Choices) -> Outcome<Joint<'_>> {
-        let Self { id, test, case, designed, .. } = self;
+        let settings = choices.drive.settings(self.settings(choices)?);
+        Ok(Joint {
+            id: self.id,
+            name: self.name.clone(),
+            drive: Drive::new(settings),
+            server: choices.drive.server(self.id, &settings),
+            model: choices.drive.model(&settings),
+            power: VirtualPower::new(choices.supply),
+            plant: match &self.image {
+                Some(tables) => Plant::Image(tables.start()),
+                None => Plant::Rig(Box::new(self.test_plant(choices)?)),
+            },
+            mode: None,
+            description: description(self.id, &self.name, &self.case.truth.parameters),
+            seed: choices.seed,
+        })
+    }
+
+    fn test_plant(&self, choices: &Choices) -> Outcome<TestPlant<'_>> {
+        let Self { test, case, designed, .. } = self;
         let spec = RunSpec { controller: ControllerName::Off, plant: choices.plant, without_gap: false };
         let rig = Rig::new(&setup(&test.file, case, choices.seed, spec))?;
         let around = &case.truth.surroundings;
         let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn);
-        let settings = choices.drive.settings(self.settings(choices)?);
-        Ok(Joint {
-            id: *id,
-            name: self.name.clone(),
-            drive: Drive::new(settings),
-            server: choices.drive.server(*id, &settings),
-            model: choices.drive.model(&settings),
-            power: VirtualPower::new(choices.supply),
+        Ok(TestPlant {
             rig,
             translator: scenario::execution::translator(case),
             compensated: designed.as_ref().map(|designed| Compensated {
@@ -169,95 +170,34 @@ impl Prepared {
                 compensation: Compensation::new(&designed.compensation),
                 state: CompensatedState::default(),
             }),
-            mode: None,
-            description: description(*id, &self.name, &case.truth.parameters),
             output_zero: case.zeros.counts(turns.map(u64::cast_signed))[1] as f64 / turns[1] as f64,
-            seed: choices.seed,
         })
     }
 
-    /// Settings of a drive that fits the joint. Its largest current gives the joint's largest torque, which gives the
-    /// torque constant; the rated torque heats the winding by its rated rise.
+    /// Settings of a drive that fits the joint.
     fn settings(&self, choices: &Choices) -> Outcome<Settings> {
-        let (joint, around) = (&self.case.truth.parameters, &self.case.truth.surroundings);
-        let ratio = joint.geometry.ratio_by_teeth();
-        let inertia = sheet::inertia_at_link(joint) as f32;
-        let encoder_bandwidth = ENCODER_BANDWIDTH_PERIODS * around.control_rate as f32;
-        let rotor_share = (joint.rotor_inertia * ratio * ratio) as f32 / inertia;
-        let in_the_gap = ROTOR_CROSSOVER_RATIO * encoder_bandwidth * rotor_share.min(1.0);
-        let bandwidth = (self.case.bandwidth(&self.test.file)?.min(MAX_BANDWIDTH) as f32).min(in_the_gap);
-        let rated = (joint.rated_output_torque / ratio) as f32;
-        let torque_limit = around.torque_limit.min(1e6) as f32;
-        let torque_constant = torque_limit / choices.drive.peak_current();
-        Ok(Settings {
-            ratio: Ratio::new(ratio),
-            period: 1.0 / around.control_rate as f32,
-            motor_counts_per_turn: around.motor_encoder.counts_per_turn as u32,
-            output_counts_per_turn: self
-                .test
-                .file
-                .output_encoder
-                .then_some(around.output_encoder.counts_per_turn as u32),
-            encoder_bandwidth,
-            max_silent_periods: around.control_rate / 100,
-            torque_constant,
-            resistance: VirtualPower::resistance(rated, torque_constant),
-            torque_limit,
-            max_velocity: (around.speed_limit / ratio) as f32,
-            overspeed: 1.5 * (around.speed_limit / ratio) as f32,
-            min_voltage: 0.5 * choices.supply,
-            max_voltage: 1.25 * choices.supply,
-            gains: Gains::for_inertia(inertia, bandwidth),
-            integral_limit: torque_limit * ratio as f32,
-            is_calibrated: choices.is_calibrated,
-            ..Settings::default()
-        })
+        let (file, truth) = (&self.test.file, &self.case.truth);
+        let bandwidth = self.case.bandwidth(file)?;
+        let design = DriveDesign::new(&truth.parameters, &truth.surroundings, bandwidth, file.output_encoder);
+        Ok(design.settings(choices.drive.peak_current(), choices.supply, choices.is_calibrated))
     }
 }
 
 impl Joint<'_> {
     /// Runs one control period.
     pub fn step(&mut self) -> Result<(), RunError> {
-        let begun = self.rig.begin_period();
-        let samples = self.translator.samples(&begun.seen);
-        let is_new = begun.seen.motor.period == begun.seen.period;
-        let mut sensors = Sensors {
-            motor_counts: is_new.then_some(samples.motor.counts),
-            output_counts: samples.output.map(|reading| reading.counts),
-            motor_torque: begun.torques.air_gap as f32,
-            ..Sensors::default()
-        };
-        self.power.read(&mut sensors);
+        let now = self.time();
         if let Some(mode) = &self.mode {
-            mode.command(&mut self.drive, begun.time);
+            mode.command(&mut self.drive, now);
         }
-        let torque = self.drive_step(&sensors, &samples);
-        self.translator.note(torque);
-        self.rig.end_period(begun.time, f64::from(torque))?;
-        self.rig.check_motion(begun.time)?;
-        let motor_speed = self.rig.plant().joint().motor_speed as f32;
-        let air_gap = self.rig.plant().torques().air_gap as f32;
-        self.power.step(self.drive.settings(), air_gap, motor_speed);
-        Ok(())
-    }
-
-    /// Torque of the motor for this period [N m].
-    fn drive_step(&mut self, sensors: &Sensors, samples: &Samples) -> f32 {
-        let Self { drive, compensated, .. } = self;
-        let Some(Compensated { observer, compensation, state }) = compensated else { return drive.step(sensors, None) };
-        let estimates = *observer.step(samples);
-        (state.source, state.half_backlash) = (estimates.source, estimates.half_backlash.value);
-        if drive.set_point().is_none() {
-            compensation.restart();
+        let Self { drive, power, plant, .. } = self;
+        match plant {
+            Plant::Rig(plant) => plant.step(drive, power),
+            Plant::Image(joint) => {
+                joint.step(drive, power);
+                Ok(())
+            }
         }
-        let (origin, ratio) = (drive.origin(), drive.settings().ratio.to_f32());
-        let mut follow = |set_point: &SetPoint, _: &Feedback| {
-            let command = mapping::command(set_point, Turns::ZERO.minus(origin))?;
-            let output = compensation.step(&estimates, &command);
-            (state.stage, state.is_stepped_back) = (output.stage, output.stepped_back);
-            Some(output.torque * ratio)
-        };
-        drive.step(sensors, Some(&mut follow))
     }
 
     /// Commands the drive in place of its client from now on, or gives it back.
@@ -286,24 +226,34 @@ impl Joint<'_> {
         );
         let target = f64::from(feedback.target.minus(self.drive.origin()).to_rad());
         let wanted = if follows && feedback.output_position.is_some() { target } else { f64::NAN };
-        let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
-        let sample = true_sample(joint, &torques, self.rig.half_backlash(), wanted);
-        Sample { link: self.truth().link, ..sample }
-    }
-
-    /// Time of the joint [s].
-    pub fn time(&self) -> f64 {
-        self.rig.plant().joint().time
-    }
-
-    /// Control period [s].
-    pub fn period(&self) -> f64 {
-        self.rig.period()
+        match &self.plant {
+            Plant::Rig(plant) => plant.sample(wanted),
+            Plant::Image(joint) => Sample { wanted, ..joint.sample() },
+        }
     }
 
     /// State of observer and compensation, if they act in the drive.
     pub fn compensated(&self) -> Option<CompensatedState> {
-        self.compensated.as_ref().map(|compensated| compensated.state)
+        match &self.plant {
+            Plant::Rig(plant) => plant.compensated.as_ref().map(|compensated| compensated.state),
+            Plant::Image(_) => None,
+        }
+    }
+
+    /// Time of the joint [s].
+    pub fn time(&self) -> f64 {
+        match &self.plant {
+            Plant::Rig(plant) => plant.rig.plant().joint().time,
+            Plant::Image(joint) => joint.time(),
+        }
+    }
+
+    /// Control period [s].
+    pub fn period(&self) -> f64 {
+        match &self.plant {
+            Plant::Rig(plant) => plant.rig.period(),
+            Plant::Image(joint) => joint.period(),
+        }
     }
 
     /// Seed of faults that are injected while the joint runs.
@@ -311,13 +261,79 @@ impl Joint<'_> {
         self.seed
     }
 
-    /// Plant with its faults.
-    pub fn rig(&mut self) -> &mut Rig {
-        &mut self.rig
+    /// True for the joint of an image.
+    pub fn is_of_image(&self) -> bool {
+        matches!(self.plant, Plant::Image(_))
+    }
+
+    /// Plant with its faults; `None` for the joint of an image, which has none.
+    pub fn rig(&mut self) -> Option<&mut Rig> {
+        match &mut self.plant {
+            Plant::Rig(plant) => Some(&mut plant.rig),
+            Plant::Image(_) => None,
+        }
     }
 
     /// True state.
     pub fn truth(&self) -> Truth {
+        match &self.plant {
+            Plant::Rig(plant) => plant.truth(),
+            Plant::Image(joint) => joint.truth(),
+        }
+    }
+}
+
+impl TestPlant<'_> {
+    /// Runs one control period with the drive.
+    fn step(&mut self, drive: &mut Drive, power: &mut VirtualPower) -> Result<(), RunError> {
+        let begun = self.rig.begin_period();
+        let samples = self.translator.samples(&begun.seen);
+        let is_new = begun.seen.motor.period == begun.seen.period;
+        let mut sensors = Sensors {
+            motor_counts: is_new.then_some(samples.motor.counts),
+            output_counts: samples.output.map(|reading| reading.counts),
+            motor_torque: begun.torques.air_gap as f32,
+            ..Sensors::default()
+        };
+        power.read(&mut sensors);
+        let torque = self.drive_step(drive, &sensors, &samples);
+        self.translator.note(torque);
+        self.rig.end_period(begun.time, f64::from(torque))?;
+        self.rig.check_motion(begun.time)?;
+        let motor_speed = self.rig.plant().joint().motor_speed as f32;
+        let air_gap = self.rig.plant().torques().air_gap as f32;
+        power.step(drive.settings(), air_gap, motor_speed);
+        Ok(())
+    }
+
+    /// Torque of the motor for this period [N m].
+    fn drive_step(&mut self, drive: &mut Drive, sensors: &Sensors, samples: &Samples) -> f32 {
+        let Some(Compensated { observer, compensation, state }) = &mut self.compensated else {
+            return drive.step(sensors, None);
+        };
+        let estimates = *observer.step(samples);
+        (state.source, state.half_backlash) = (estimates.source, estimates.half_backlash.value);
+        if drive.set_point().is_none() {
+            compensation.restart();
+        }
+        let (origin, ratio) = (drive.origin(), drive.settings().ratio.to_f32());
+        let mut follow = |set_point: &SetPoint, _: &Feedback| {
+            let command = mapping::command(set_point, Turns::ZERO.minus(origin))?;
+            let output = compensation.step(&estimates, &command);
+            (state.stage, state.is_stepped_back) = (output.stage, output.stepped_back);
+            Some(output.torque * ratio)
+        };
+        drive.step(sensors, Some(&mut follow))
+    }
+
+    /// State for the live view with the desired angle of the link [rad].
+    fn sample(&self, wanted: f64) -> Sample {
+        let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
+        let sample = true_sample(joint, &torques, self.rig.half_backlash(), wanted);
+        Sample { link: self.truth().link, ..sample }
+    }
+
+    fn truth(&self) -> Truth {
         let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
         Truth {
             link: joint.link_angle + std::f64::consts::TAU * self.output_zero,

@@ -9,7 +9,7 @@ use report::failure::{Failure, Outcome};
 use report::log::{Log, Message, Topic, field};
 
 use crate::joint::Joint;
-use crate::wire::Packet;
+use wires::Packet;
 
 /// Messages a second of each joint [Hz].
 const RATE: f64 = 1000.0;

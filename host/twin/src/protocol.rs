@@ -2,10 +2,9 @@
 
 use clap::ValueEnum;
 use drives::bus::{CanServer, SerialServer};
-use drives::cybergear::Model;
-use drives::{Settings, cia402, cybergear, damiao, feetech, moteus, odrive};
-
-use crate::wire::WireName;
+use drives::{Settings, feetech};
+use virtual_drive::maker::{self, Maker, damiao_type, robstride_model};
+use wires::WireName;
 
 /// Drive by the name of its maker or profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -28,11 +27,25 @@ pub enum DriveName {
     Cia402,
 }
 
-/// Identifier of the answers of Damiao drives, beside the drive's own in the low bits: as most clients have it.
-const DAMIAO_FEEDBACK: u16 = 0x10;
-
-/// RobStride models that a joint may get.
-const ROBSTRIDES: [Model; 4] = [Model::RobStride00, Model::RobStride02, Model::RobStride03, Model::RobStride04];
+/// Runs an expression for the maker of a drive on a CAN bus, as type `$maker`, or another for a serial bus.
+macro_rules! for_maker {
+    ($drive:expr, $maker:ident => $on_can:expr, $on_serial:expr) => {
+        match $drive {
+            DriveName::Moteus => for_maker!(@ $maker = maker::Moteus, $on_can),
+            DriveName::Odrive => for_maker!(@ $maker = maker::Odrive, $on_can),
+            DriveName::Odrive3 => for_maker!(@ $maker = maker::Odrive3, $on_can),
+            DriveName::Damiao => for_maker!(@ $maker = maker::Damiao, $on_can),
+            DriveName::Cybergear => for_maker!(@ $maker = maker::Cybergear, $on_can),
+            DriveName::Robstride => for_maker!(@ $maker = maker::Robstride, $on_can),
+            DriveName::Cia402 => for_maker!(@ $maker = maker::Cia402, $on_can),
+            DriveName::Feetech => $on_serial,
+        }
+    };
+    (@ $maker:ident = $type:ty, $on_can:expr) => {{
+        type $maker = $type;
+        $on_can
+    }};
+}
 
 /// Server of a drive on its kind of bus.
 pub enum Server {
@@ -59,21 +72,12 @@ impl DriveName {
 
     /// Voltage of a usual supply [V].
     pub fn usual_supply(self) -> f32 {
-        match self {
-            Self::Feetech => 12.0,
-            Self::Damiao | Self::Cybergear => 24.0,
-            _ => 48.0,
-        }
+        for_maker!(self, M => M::SUPPLY, 12.0)
     }
 
-    /// Largest current of the motor [A]: of the data sheets of CyberGear and RobStride 02, and the current that an
-    /// STS3215 draws when it stands still; the others are assumed.
+    /// Largest current of the motor [A]: the maker's, and the current that an STS3215 draws when it stands still.
     pub fn peak_current(self) -> f32 {
-        match self {
-            Self::Feetech => 2.7,
-            Self::Cybergear | Self::Robstride => 23.0,
-            _ => 40.0,
-        }
+        for_maker!(self, M => M::PEAK_CURRENT, 2.7)
     }
 
     /// True for a drive on a serial bus.
@@ -83,26 +87,12 @@ impl DriveName {
 
     /// Largest identifier of the drive on its bus.
     pub fn max_id(self) -> u8 {
-        match self {
-            Self::Moteus => 127,
-            Self::Odrive | Self::Odrive3 => 62,
-            Self::Damiao => 15,
-            Self::Cybergear | Self::Robstride | Self::Cia402 => 127,
-            Self::Feetech => 253,
-        }
+        for_maker!(self, M => M::MAX_ID, 253)
     }
 
     /// Settings with the maker's defaults.
     pub fn settings(self, settings: Settings) -> Settings {
-        match self {
-            Self::Moteus => moteus::settings(settings),
-            Self::Odrive | Self::Odrive3 => odrive::settings(settings),
-            Self::Damiao => damiao::settings(settings),
-            Self::Cybergear => cybergear::settings(Model::CyberGear, settings),
-            Self::Robstride => cybergear::settings(robstride_model(&settings), settings),
-            Self::Feetech => feetech::settings(settings),
-            Self::Cia402 => cia402::settings(settings),
-        }
+        for_maker!(self, M => M::settings(settings), feetech::settings(settings))
     }
 
     /// Model of the drive whose fields have room for the joint's torque; `None` if the maker has one form only.
@@ -116,19 +106,11 @@ impl DriveName {
 
     /// Server of a drive with an identifier and settings.
     pub fn server(self, id: u8, settings: &Settings) -> Server {
-        match self {
-            Self::Moteus => Server::Can(Box::new(moteus::Server::new(id))),
-            Self::Odrive => Server::Can(Box::new(odrive::Server::new(id, odrive::Firmware::V0_6))),
-            Self::Odrive3 => Server::Can(Box::new(odrive::Server::new(id, odrive::Firmware::V0_5))),
-            Self::Damiao => {
-                let ranges = damiao_type(settings).1;
-                Server::Can(Box::new(damiao::Server::new(id.into(), DAMIAO_FEEDBACK | u16::from(id), ranges)))
-            }
-            Self::Cybergear => Server::Can(Box::new(cybergear::Server::new(id, Model::CyberGear))),
-            Self::Robstride => Server::Can(Box::new(cybergear::Server::new(id, robstride_model(settings)))),
-            Self::Feetech => Server::Serial(Box::new(feetech::Server::new(id, settings))),
-            Self::Cia402 => Server::Can(Box::new(cia402::Server::new(id))),
-        }
+        for_maker!(
+            self,
+            M => Server::Can(Box::new(M::server(id, settings))),
+            Server::Serial(Box::new(feetech::Server::new(id, settings)))
+        )
     }
 
     /// Line of Python that connects the usual client to a port.
@@ -153,29 +135,4 @@ impl DriveName {
             _ => bus,
         }
     }
-}
-
-/// Largest torque of the joint's output [N m].
-fn peak_torque(settings: &Settings) -> f32 {
-    settings.torque_limit * settings.ratio.to_f32()
-}
-
-/// Damiao type with the smallest torque range that the joint fits into; else the one with the largest.
-fn damiao_type(settings: &Settings) -> (&'static str, damiao::mit::Ranges) {
-    smallest_that_fits(damiao::MOTOR_TYPES[0], &damiao::MOTOR_TYPES, |(_, ranges)| ranges.torque, settings)
-}
-
-/// RobStride model with the smallest torque range that the joint fits into; else the one with the largest.
-fn robstride_model(settings: &Settings) -> Model {
-    smallest_that_fits(ROBSTRIDES[0], &ROBSTRIDES, |model| model.sheet().torque.high, settings)
-}
-
-/// Model whose torque range is the smallest that holds the joint's; else the one with the largest range.
-fn smallest_that_fits<M: Copy>(first: M, models: &[M], torque: fn(&M) -> f32, settings: &Settings) -> M {
-    let needed = peak_torque(settings);
-    models.iter().copied().fold(first, |best, model| {
-        let (range, best_range) = (torque(&model), torque(&best));
-        let is_better = if best_range < needed { range > best_range } else { range >= needed && range < best_range };
-        if is_better { model } else { best }
-    })
 }

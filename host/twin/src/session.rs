@@ -26,7 +26,7 @@ use crate::joint::{Choices, Joint, Prepared};
 use crate::log::TwinLog;
 use crate::protocol::DriveName;
 use crate::summary::Summary;
-use crate::wire::{Packet, WireName};
+use wires::{Packet, WireName};
 
 /// Longest wait for an event, so that Ctrl-C is heard.
 const MAX_WAIT: Duration = Duration::from_millis(20);
@@ -49,6 +49,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         compensation: arguments.compensation,
         is_calibrated: !arguments.uncalibrated,
         supply: arguments.supply.unwrap_or(arguments.drive.usual_supply()),
+        image: arguments.image.clone(),
     };
     progress.stage("designing the joints");
     let prepared = joints(arguments)?

@@ -131,6 +131,16 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.acting
     }
 
+    /// Speed of the motor [rad/s].
+    pub fn motor_speed(&self) -> T {
+        self.shafts.speeds[0]
+    }
+
+    /// Speed of the link [rad/s].
+    pub fn link_speed(&self) -> T {
+        self.shafts.speeds[1]
+    }
+
     /// Present measurements: counts within the encoders' turns, and the last commanded torque.
     pub fn samples(&self) -> Samples<T> {
         let (table, shafts) = (self.table, self.shafts);
@@ -195,8 +205,8 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         (delayed_command - command_step * table.lacking) * table.gain
     }
 
-    /// Torque from the sun to the planets, by mesh stiffness alone.
-    fn mesh_torque(&self) -> T {
+    /// Torque from the sun to the planets, by mesh stiffness alone [N m].
+    pub fn mesh_torque(&self) -> T {
         let table = self.table;
         let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
         let penetration =

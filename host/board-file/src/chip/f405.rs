@@ -113,13 +113,15 @@ const SPI: &[SpiUnit] = &[
     },
 ];
 
+/// Data sheet DS8626, table 9.
 const CAN: &[CanUnit] = &[
-    CanUnit {
-        name: "CAN1",
-        send: &[pin("PA12"), pin("PB9"), pin("PD1")],
-        receive: &[pin("PA11"), pin("PB8"), pin("PD0")],
-    },
-    CanUnit { name: "CAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
+    CanUnit::classic(
+        "CAN1",
+        APB1,
+        &[at("PA12", 9), at("PB9", 9), at("PD1", 9)],
+        &[at("PA11", 9), at("PB8", 9), at("PD0", 9)],
+    ),
+    CanUnit::classic("CAN2", APB1, &[at("PB6", 9), at("PB13", 9)], &[at("PB5", 9), at("PB12", 9)]),
 ];
 
 const TIMERS: &[TimerUnit] = &[

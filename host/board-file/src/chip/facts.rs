@@ -2,6 +2,7 @@
 
 use model_core::gears::design::Processor;
 
+use crate::bit_timing::TimingLimits;
 use crate::pin::{Alternate, Pin};
 use crate::pll::PllLimits;
 
@@ -92,12 +93,43 @@ pub(crate) struct SpiUnit {
     pub input: &'static [Alternate],
 }
 
-/// CAN peripheral. The alternate functions of its pins are left out until an image uses it.
+/// CAN peripheral.
 #[derive(Debug)]
 pub(crate) struct CanUnit {
     pub name: &'static str,
-    pub send: &'static [Pin],
-    pub receive: &'static [Pin],
+    /// Clock of the bit timing while the PLL runs [Hz].
+    pub clock: u32,
+    /// Ranges of the bit timing.
+    pub timing: TimingLimits,
+    /// Ranges of the timing of the second bit rate; `None` for classical CAN.
+    pub data_timing: Option<TimingLimits>,
+    pub send: &'static [Alternate],
+    pub receive: &'static [Alternate],
+}
+
+impl CanUnit {
+    /// FDCAN: RM0440 44.4.7 and 44.4.3, RM0433 56.5.7 and 56.5.3.
+    pub const fn flexible(
+        name: &'static str,
+        clock: u32,
+        send: &'static [Alternate],
+        receive: &'static [Alternate],
+    ) -> Self {
+        let timing = TimingLimits { prescaler: 512, before: 256, after: 128, jump: 128 };
+        let data = TimingLimits { prescaler: 32, before: 32, after: 16, jump: 16 };
+        Self { name, clock, timing, data_timing: Some(data), send, receive }
+    }
+
+    /// bxCAN: RM0090 32.9.2.
+    pub const fn classic(
+        name: &'static str,
+        clock: u32,
+        send: &'static [Alternate],
+        receive: &'static [Alternate],
+    ) -> Self {
+        let timing = TimingLimits { prescaler: 1024, before: 16, after: 8, jump: 4 };
+        Self { name, clock, timing, data_timing: None, send, receive }
+    }
 }
 
 /// Timer that counts encoder pulses on its first two channels.

@@ -122,15 +122,17 @@ pub(super) const SPI: &[SpiUnit] = &[
     },
 ];
 
-pub(super) const FDCAN1: CanUnit = CanUnit {
-    name: "FDCAN1",
-    send: &[pin("PA12"), pin("PB9"), pin("PD1")],
-    receive: &[pin("PA11"), pin("PB8"), pin("PD0")],
-};
+/// Data sheet DS12288, table 13. The clock of the FDCAN is that of the bus (RM0440 7.4.27).
+pub(super) const FDCAN1: CanUnit = CanUnit::flexible(
+    "FDCAN1",
+    BUSES,
+    &[at("PA12", 9), at("PB9", 9), at("PD1", 9)],
+    &[at("PA11", 9), at("PB8", 9), at("PD0", 9)],
+);
 const CAN: &[CanUnit] = &[
     FDCAN1,
-    CanUnit { name: "FDCAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
-    CanUnit { name: "FDCAN3", send: &[pin("PA15"), pin("PB4")], receive: &[pin("PA8"), pin("PB3")] },
+    CanUnit::flexible("FDCAN2", BUSES, &[at("PB6", 9), at("PB13", 9)], &[at("PB5", 9), at("PB12", 9)]),
+    CanUnit::flexible("FDCAN3", BUSES, &[at("PA15", 11), at("PB4", 11)], &[at("PA8", 11), at("PB3", 11)]),
 ];
 
 /// Timers common to all chips of RM0440. TIM5 of the STM32G474 is left out.

@@ -117,13 +117,18 @@ const SERIAL: &[SerialUnit] = &[
     },
 ];
 
+/// Clock of the FDCAN: output Q of the first PLL, a tenth of its oscillator's 800 MHz [Hz].
+const FDCAN: u32 = 80_000_000;
+
+/// Data sheet DS12110, table 9 on.
 const CAN: &[CanUnit] = &[
-    CanUnit {
-        name: "FDCAN1",
-        send: &[pin("PA12"), pin("PB9"), pin("PD1"), pin("PH13")],
-        receive: &[pin("PA11"), pin("PB8"), pin("PD0"), pin("PH14"), pin("PI9")],
-    },
-    CanUnit { name: "FDCAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
+    CanUnit::flexible(
+        "FDCAN1",
+        FDCAN,
+        &[at("PA12", 9), at("PB9", 9), at("PD1", 9), at("PH13", 9)],
+        &[at("PA11", 9), at("PB8", 9), at("PD0", 9), at("PH14", 9), at("PI9", 9)],
+    ),
+    CanUnit::flexible("FDCAN2", FDCAN, &[at("PB6", 9), at("PB13", 9)], &[at("PB5", 9), at("PB12", 9)]),
 ];
 
 const TIMERS: &[TimerUnit] = &[

@@ -92,6 +92,11 @@ impl Chip {
         self.facts().spi.is_ok()
     }
 
+    /// Returns whether the firmware has a driver for the chip's CAN.
+    pub fn has_can(self) -> bool {
+        self != Self::Stm32h743
+    }
+
     /// Lowest and highest frequency of a crystal, or of an external clock signal [Hz].
     pub fn oscillator_limits(self, crystal: bool) -> (u32, u32) {
         if crystal { self.facts().crystal } else { self.facts().signal }
@@ -308,7 +313,8 @@ mod tests {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let can = facts.can.iter().flat_map(|unit| [unit.send, unit.receive]);
-            let timers = facts.timers.iter().flat_map(|unit| [unit.a, unit.b]);
+            let can = can.map(|list| list.iter().map(|alternate| alternate.pin).collect::<Vec<_>>());
+            let timers = facts.timers.iter().flat_map(|unit| [unit.a.to_vec(), unit.b.to_vec()]);
             for list in can.chain(timers) {
                 for (at, pin) in list.iter().enumerate() {
                     let mut packages = facts.variants.iter().flat_map(|variant| variant.packages);

@@ -9,6 +9,7 @@ use link::messages::Role;
 use model_core::controller::design::ControlRequest;
 use object::{Object, ObjectSegment};
 use sha2::{Digest, Sha256};
+use virtual_drive::maker::Name;
 
 use super::Say;
 use super::board::Board;
@@ -28,6 +29,9 @@ pub const CONTROL_RATE: u32 = 10_000;
 pub const SPI_RATE: u32 = 5000;
 /// Binary of the SPI slave.
 const SPI_BINARY: &str = "spi_observer";
+/// Binary of a drive on CAN, and the feature that it needs.
+const DRIVE_BINARY: &str = "drive";
+const DRIVE_FEATURE: &str = ",can";
 /// Inline threshold for boards with little flash. A lower level of optimisation would leave checks that can panic in
 /// the loops of the tick.
 const LOW_INLINE_THRESHOLD: &str = " -Cllvm-args=-inline-threshold=100";
@@ -69,7 +73,8 @@ pub fn build_image(
     let forced = check_fit(&joint_file, board, role, tick_rate, forced, say)?;
     let place = file_name(&joint_file, board, role_name(role), tick_rate);
     let control = Control { forced, ..Control::with_defaults(tick_rate) };
-    build(toolchain, [&joint_file; 2], board, binary_name(role), &control, &place, say)
+    let what = What { binary: binary_name(role), control: &control, drive: None };
+    build(toolchain, [&joint_file; 2], board, &what, &place, say)
 }
 
 /// Rejects a joint file that the board cannot be built for. Returns whether the image needs `forced`.
@@ -134,7 +139,8 @@ pub fn build_control_image(
     let forced = check_fit(&truth_file, board, role, control.rate, control.forced, say)?;
     let control = &Control { forced, ..*control };
     let place = format!("control-{name}-{}-{}.elf", board.name(), role_name(role));
-    build(toolchain, [&truth_file, &told_file], board, binary_name(role), control, &place, say)
+    let what = What { binary: binary_name(role), control, drive: None };
+    build(toolchain, [&truth_file, &told_file], board, &what, &place, say)
 }
 
 /// Builds observer and compensation of a joint as an SPI slave, for a board with an SPI slave.
@@ -162,7 +168,67 @@ pub fn build_spi_slave(
         ..Control::with_defaults(rate)
     };
     let place = file_name(&joint_file, board, SPI_BINARY, rate);
-    build(toolchain, [&joint_file; 2], board, SPI_BINARY, &control, &place, say)
+    let what = What { binary: SPI_BINARY, control: &control, drive: None };
+    build(toolchain, [&joint_file; 2], board, &what, &place, say)
+}
+
+/// Drive of an image in role `drive`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DriveOnBus {
+    /// Maker, by its word.
+    pub maker: Name,
+    /// Identifier of the drive on its bus.
+    pub id: u8,
+}
+
+/// Builds a joint behind a drive on CAN, for a board whose file has `[can]`. Says if the board has no transceiver.
+pub fn build_drive(
+    toolchain: &Toolchain,
+    joint_file: &Path,
+    board: &Board,
+    drive: &DriveOnBus,
+    rate: u32,
+    forced: bool,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    let DriveOnBus { maker, id } = *drive;
+    let can = board.description.can.as_ref().ok_or_else(|| no_can(board))?;
+    if !board.chip().has_can() {
+        let message = format!("{} is no drive on CAN: the firmware has no driver for its chip's CAN", board.name());
+        return Err(Failure::new(message).with_help("use a board with an STM32F405 or an STM32G4"));
+    }
+    if maker.is_flexible && can.data_bitrate.is_none() {
+        let why = match can.is_flexible() {
+            true => "its board file has no `data_bitrate` in [can]".to_owned(),
+            false => format!("{} is classical CAN", can.unit),
+        };
+        return Err(Failure::new(format!("{} cannot be a {} drive: {why}", board.name(), maker.word))
+            .with_help("use a drive on classical CAN, or a board with FDCAN and a second bit rate"));
+    }
+    if id == 0 || id > maker.max_id {
+        return Err(Failure::new(format!("identifier {id} is out of range for a {} drive", maker.word))
+            .with_help(format!("write 1 to {}", maker.max_id)));
+    }
+    if let Some(sentence) = can.missing_transceiver() {
+        say(&format!("{}: {sentence}", board.name()));
+    }
+    let joint_file = absolute_path(joint_file)?;
+    let control = Control {
+        // The role `loop` runs the same joint beside more work.
+        forced: check_fit(&joint_file, board, Role::Loop, rate, forced, say)?,
+        ..Control::with_defaults(rate)
+    };
+    let place = file_name(&joint_file, board, &format!("{DRIVE_BINARY}-{}-{id}", maker.word), rate);
+    let what = What { binary: DRIVE_BINARY, drive: Some(*drive), control: &control };
+    build(toolchain, [&joint_file; 2], board, &what, &place, say)
+}
+
+/// Failure of a board without CAN.
+fn no_can(board: &Board) -> Failure {
+    let message = format!("{} is no drive on CAN: its board file has no [can]", board.name());
+    let presets = Board::presets().unwrap_or_default();
+    let able: Vec<&str> = presets.iter().filter(|board| board.description.can.is_some()).map(Board::name).collect();
+    Failure::new(message).with_help(format!("use one of {}, or add [can] to the file", able.join(", ")))
 }
 
 /// Absolute path of a joint file.
@@ -172,12 +238,19 @@ fn absolute_path(joint_file: &Path) -> Outcome<PathBuf> {
     })
 }
 
+/// Binary of an image with its settings.
+struct What<'w> {
+    binary: &'w str,
+    control: &'w Control,
+    /// Drive of the role `drive`.
+    drive: Option<DriveOnBus>,
+}
+
 fn build(
     toolchain: &Toolchain,
     [truth, told]: [&Path; 2],
     board: &Board,
-    binary: &str,
-    control: &Control,
+    &What { binary, control, drive }: &What<'_>,
     name: &str,
     say: Say<'_>,
 ) -> Outcome<Image> {
@@ -189,7 +262,11 @@ fn build(
     let own_flags = if has_room_for_all(board) { "" } else { LOW_INLINE_THRESHOLD };
     let mut target_flags = toolchain.target_flags();
     target_flags.push(own_flags);
-    let environment: [(&str, &OsStr); 9] = [
+    let (maker, id) = drive.map_or_else(Default::default, |drive| (drive.maker.word, drive.id.to_string()));
+    let features = board.chip().name().to_owned() + if drive.is_some() { DRIVE_FEATURE } else { "" };
+    let environment: [(&str, &OsStr); 11] = [
+        ("JOINT_DRIVE", maker.as_ref()),
+        ("JOINT_DRIVE_ID", id.as_ref()),
         (TARGET_FLAGS, &target_flags),
         ("BOARD_FILE", board.file.as_os_str()),
         ("JOINT_FILE", truth.as_os_str()),
@@ -207,9 +284,9 @@ fn build(
         &images,
         &place,
         [truth, told, &board.file],
-        &format!("{binary}{}{control:?}{own_flags}", board.file.display()),
+        &format!("{binary}{maker}{id}{}{control:?}{own_flags}", board.file.display()),
         || {
-            compile(toolchain, FIRMWARE_PACKAGE, binary, board.chip().name(), &environment, say)
+            compile(toolchain, FIRMWARE_PACKAGE, binary, &features, &environment, say)
                 .map_err(|failure| size_failure(&failure, board).unwrap_or(failure))
         },
     )?;

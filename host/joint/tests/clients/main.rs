@@ -9,6 +9,7 @@ mod bad_clients;
 mod command;
 mod environment;
 mod five_minutes;
+mod image;
 mod line;
 mod lost_motion;
 mod round_trips;

@@ -5,8 +5,8 @@ import math
 import moteus
 from moteus import Mode, Register
 from moteus import multiplex as mp
-from twin import (HOT_MOTOR, LOST_MOTOR_ENCODER, LOST_OUTPUT_ENCODER, MOVE, PORT, UNDER_VOLTAGE, WORDS, check,
-                  check_move, condition, wrapped)
+from twin import (HAS_CONTROL, HOT_MOTOR, LOST_MOTOR_ENCODER, LOST_OUTPUT_ENCODER, MOVE, PORT, UNDER_VOLTAGE, WORDS,
+                  check, check_move, condition, wrapped)
 
 RATIO = 6
 # The default of 0.1 s would expire while a busy machine stops the client.
@@ -86,7 +86,7 @@ async def main():
     await reaches((Mode.STOPPED, 0), "cleared")
 
     faults = [(40, UNDER_VOLTAGE), (38, HOT_MOTOR), (35, LOST_MOTOR_ENCODER), (43, LOST_OUTPUT_ENCODER)]
-    for code, (cause, end) in faults:
+    for code, (cause, end) in faults if HAS_CONTROL else []:
         await drive.set_position(position=math.nan, watchdog_timeout=math.nan)
         await reaches((Mode.POSITION, 0), "enabled")
         with condition(cause, end):

@@ -9,8 +9,8 @@ import time
 
 import can
 import cantools
-from twin import (HOT_MOTOR, LOST_MOTOR_ENCODER, MOVE, PORT, UNDER_VOLTAGE, WORDS, at_rest, check, check_move,
-                  condition, wait_for, wrapped)
+from twin import (HAS_CONTROL, HOT_MOTOR, LOST_MOTOR_ENCODER, MOVE, PORT, UNDER_VOLTAGE, WORDS, at_rest, check,
+                  check_move, condition, wait_for, wrapped)
 
 IS_05 = WORDS == ["0.5"]
 NODE, RATIO = 1, 6
@@ -146,7 +146,7 @@ for cause, code, legacy in [
     (UNDER_VOLTAGE, 0x200, (0x40, 0x1000000, 0)),
     (HOT_MOTOR, 0x2000, (0x40, 0x20000, 0)),
     (LOST_MOTOR_ENCODER, 0x8, (0x100, 0, 0x80)),
-]:
+] if HAS_CONTROL else []:
     enable()
     with condition(*cause):
         wait_for(lambda: is_state(IDLE), f"{cause[0]} disarms")

@@ -1,6 +1,7 @@
 """Helpers of the client scripts: arguments, checks, and the control socket of `joint twin`.
 
-Each script is called with the port of the twin, the path of its control socket, and words of its own.
+Each script is called with the port of the twin, the path of its control socket, and words of its own. A firmware image
+has no control socket: the path is `-`, and faults by the socket are left out.
 """
 import contextlib
 import json
@@ -10,6 +11,7 @@ import time
 
 PORT, CONTROL = sys.argv[1:3]
 WORDS = sys.argv[3:]
+HAS_CONTROL = CONTROL != "-"
 
 MOVE = 0.1  # Motion of the output in every script [turns].
 # The drives' own laws bend under the weight of the link: 6 N m over a stiffness of 250 N m/rad is 0.004 turns.

@@ -13,7 +13,7 @@
 use drives::Frame;
 use drives::frame::Kind;
 
-use crate::wire::length_code;
+use wires::length_code;
 
 /// Delimiter of the checksum, acknowledgement with its delimiter, end of frame, intermission.
 const END: u32 = 1 + 2 + 7 + 3;

@@ -1,5 +1,5 @@
 //! Form of frames on a line: `slcan` and `fdcanusb` as text of USB adapters, `socketcand` as text over TCP, `serial` as
-//! bare bytes.
+//! bare bytes. The twin and the model of the boards' registers use them.
 
 mod fdcanusb;
 mod hex;

@@ -109,16 +109,17 @@ fn wires_survive_a_storm() {
         "\u{ff}\u{ff}\u{1}\u{4}\u{2}\u{38}\u{2}\u{be}",
     ];
     let count: u64 = std::env::var("STORM_FRAMES").map_or(40_000, |count| count.parse().expect("a number of lines"));
-    let mut random = scenario::random::RandomStream::new(1, "lines");
+    let mut state = 1;
+    let mut word = || model_core::numbers::random::splitmix64(&mut state);
     for name in [WireName::Slcan, WireName::Fdcanusb, WireName::Socketcand, WireName::Serial] {
         let (mut wire, mut packets) = (wire(name), 0_u64);
         for _ in 0..count / 4 {
-            let line = LINES[random.word() as usize % LINES.len()];
+            let line = LINES[word() as usize % LINES.len()];
             let mut bytes: Vec<u8> = line.chars().map(|letter| letter as u8).collect();
-            for _ in 0..random.word() % 3 {
-                let at = random.word() as usize % bytes.len();
-                match random.word() % 4 {
-                    0 => bytes[at] = random.word() as u8,
+            for _ in 0..word() % 3 {
+                let at = word() as usize % bytes.len();
+                match word() % 4 {
+                    0 => bytes[at] = word() as u8,
                     1 => drop(bytes.remove(at)),
                     2 => bytes.insert(at, bytes[at]),
                     _ => bytes.truncate(at + 1),

@@ -1,0 +1,199 @@
+//! Drive on CAN: an image answers as its twin on this host in every frame, hears a stop on a full bus, and comes back
+//! from bus-off.
+
+use board::device::board::Board as Described;
+use drives::Frame;
+
+use super::can_client::{Client, Mode, Order};
+use super::clean;
+use crate::boards::Subject;
+use crate::can_bus::CanBus;
+use crate::can_twin::DriveOf;
+use crate::cpu::Board;
+use crate::images::{JOINT, drive_of};
+use crate::wires::{MICROSECOND, Time};
+
+/// Millisecond.
+const MILLISECOND: Time = 1000 * MICROSECOND;
+/// Time after which a client of either kind knows the mode.
+const UNTIL_KNOWN: Time = 120 * MILLISECOND;
+
+/// Session with a board.
+struct Session<'a> {
+    board: Board<'a>,
+    client: Client,
+    /// Frames that the client has read.
+    read: usize,
+}
+
+impl Session<'_> {
+    fn start(subject: &Subject) -> Result<Self, String> {
+        let client = Client::of(drive_of(&subject.board).ok_or("the board is no drive")?.maker);
+        let mut session = Self { board: subject.start()?, client, read: 0 };
+        session.run(20 * MILLISECOND)?;
+        Ok(session)
+    }
+
+    fn bus(&mut self) -> &mut CanBus {
+        &mut self.board.machine_mut().wires.can
+    }
+
+    /// Runs the board, which must not break a rule.
+    fn run(&mut self, duration: Time) -> Result<(), String> {
+        self.board.machine_mut().attention = true;
+        self.board.run_for(duration);
+        clean(&self.board)
+    }
+
+    fn order(&mut self, order: Order) {
+        let frames = self.client.frames(order);
+        self.bus().to_board.extend(frames);
+    }
+
+    /// Frames since the last call.
+    fn heard(&mut self) -> Vec<Frame> {
+        let read = self.read;
+        let frames = self.bus().to_others[read..].to_vec();
+        self.read += frames.len();
+        frames
+    }
+
+    /// Mode that the drive reports.
+    fn mode(&mut self, when: &str) -> Result<Mode, String> {
+        self.heard();
+        // The last part is short, since some drives stop without a command for 100 ms.
+        self.run(UNTIL_KNOWN)?;
+        self.asked_mode(when)
+    }
+
+    /// Mode that the drive reports at once, or reported since the last call.
+    fn asked_mode(&mut self, when: &str) -> Result<Mode, String> {
+        self.order(Order::Read);
+        self.run(3 * MILLISECOND)?;
+        let frames = self.heard();
+        let modes = frames.iter().filter_map(|frame| self.client.mode(frame));
+        modes.last().ok_or_else(|| format!("{when} none of {} frames has the mode", frames.len()))
+    }
+
+    fn expect(&mut self, expected: Mode, when: &str) -> Result<(), String> {
+        match self.mode(when)? {
+            found if found == expected => Ok(()),
+            found => Err(format!("{when} the drive is {found:?}, not {expected:?}")),
+        }
+    }
+
+    /// Moves for a number of steps of 2 ms, reading all the time.
+    fn travel(&mut self, steps: u16) -> Result<(), String> {
+        for step in 0..steps {
+            self.order(Order::Move(step));
+            self.order(Order::Read);
+            // A frame of others is no affair of the drive.
+            let foreign = self.client.foreign(step);
+            self.bus().to_board.extend(foreign);
+            self.run(2 * MILLISECOND)?;
+        }
+        Ok(())
+    }
+
+    /// Compares every frame so far with the twin's.
+    fn compare(&mut self, subject: &Subject) -> Result<usize, String> {
+        let joint =
+            joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?).map_err(|_| "a broken preset")?;
+        let drive = drive_of(&subject.board).ok_or("the board is no drive")?;
+        let processor = subject.board.processor();
+        let twin = DriveOf { maker: drive.maker.word, id: drive.id, joint: &joint, processor };
+        let bus = self.bus();
+        let in_order = bus.to_others.iter().zip(&bus.handed).all(|(sent, (_, handed))| sent == handed);
+        if !in_order {
+            return Err("the board sends frames in another order than the core hands them over".into());
+        }
+        twin.compare(&bus.handed, &bus.taken, bus.ticks)
+    }
+
+    fn lost_nothing(&mut self) -> Result<(), String> {
+        let (overruns, taken) = (self.bus().overruns, self.bus().taken.len());
+        if overruns > 0 { Err(format!("{overruns} frames beside {taken} were lost in the FIFO")) } else { Ok(()) }
+    }
+}
+
+/// A client enables the drive, moves it, reads, stops it and enables it again.
+pub fn equals_twin(subject: &Subject) -> Result<String, String> {
+    let mut session = Session::start(subject)?;
+    session.expect(Mode::Off, "after power-up")?;
+    session.order(Order::Enable);
+    session.travel(75)?;
+    if session.asked_mode("while it moves")? != Mode::On {
+        return Err("the drive was not enabled".into());
+    }
+    session.order(Order::Stop);
+    if session.mode("after the stop")? == Mode::On {
+        return Err("the drive goes on after the stop".into());
+    }
+    session.order(Order::Clear);
+    session.expect(Mode::Off, "after the errors were cleared")?;
+    session.lost_nothing()?;
+    let (count, ticks) = (session.compare(subject)?, session.bus().ticks);
+    Ok(format!("{count} frames in {ticks} ticks, each the twin's"))
+}
+
+/// A bus that is full of foreign frames: nothing is lost, and a stop is heard.
+pub fn hears_in_a_flood(subject: &Subject) -> Result<String, String> {
+    let mut session = Session::start(subject)?;
+    session.order(Order::Enable);
+    session.travel(60)?;
+    if session.asked_mode("before the flood")? != Mode::On {
+        return Err("the drive was not enabled".into());
+    }
+    let foreign: Vec<Frame> = (0..600).filter_map(|count| session.client.foreign(count)).collect();
+    session.bus().to_board.extend(foreign);
+    session.run(10 * MILLISECOND)?;
+    let stop = session.client.frames(Order::Stop);
+    for frame in stop.into_iter().rev() {
+        session.bus().to_board.push_front(frame);
+    }
+    session.run(40 * MILLISECOND)?;
+    if session.mode("after the stop in the flood")? == Mode::On {
+        return Err("the stop is not heard".into());
+    }
+    session.lost_nothing()?;
+    let taken = session.bus().taken.len();
+    session.compare(subject)?;
+    Ok(format!("{taken} frames taken, none lost, and a stop among them"))
+}
+
+/// Nobody acknowledges; another node destroys frames until bus-off; the bus is held. Afterwards the drive answers.
+pub fn recovers(subject: &Subject) -> Result<String, String> {
+    let mut session = Session::start(subject)?;
+    session.bus().acknowledges = false;
+    session.order(Order::Read);
+    session.run(30 * MILLISECOND)?;
+    session.bus().acknowledges = true;
+    session.expect(Mode::Off, "after a bus without another node")?;
+    session.bus().destroys = 34;
+    // Frames of the drive's own, or answers, until as many were destroyed as lead to bus-off.
+    for _ in 0..40 {
+        session.order(Order::Read);
+        session.run(10 * MILLISECOND)?;
+    }
+    let left = session.bus().destroys;
+    if left > 0 {
+        return Err(format!("of 34 frames that were to be destroyed, {left} were never tried"));
+    }
+    session.expect(Mode::Off, "after bus-off")?;
+    session.bus().is_held = true;
+    session.run(20 * MILLISECOND)?;
+    session.bus().is_held = false;
+    session.expect(Mode::Off, "after a bus that was held")?;
+    session.order(Order::Enable);
+    session.travel(60)?;
+    if session.asked_mode("at the end")? != Mode::On {
+        return Err("the drive cannot be enabled at the end".into());
+    }
+    Ok(format!("{} ticks", session.bus().ticks))
+}
+
+/// Returns whether a board has an image of a drive, and the model its CAN.
+pub fn is_for(board: &Described) -> bool {
+    let has_room = board::device::image::has_room_for_all(board);
+    drive_of(board).is_some() && board.chip().has_can() && has_room
+}

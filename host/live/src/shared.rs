@@ -76,8 +76,7 @@ impl Shared {
 
     /// Hands a batch to every viewer; removes the queues of viewers that left.
     pub fn hand_out(&self, batch: &Arc<Batch>) {
-        let gone = |outlet: &mut Outlet| outlet.offer(batch).is_none();
-        self.remove(&mut self.lock(), gone);
+        self.remove(&mut self.lock(), |outlet| outlet.has_left(batch));
     }
 
     /// Tells every viewer that the run is over, and forgets it.
@@ -106,28 +105,27 @@ impl Shared {
 }
 
 impl Outlet {
-    /// Offers a batch to the viewer, which loses it if its queue is full; `None` once the viewer has left.
-    fn offer(&mut self, batch: &Arc<Batch>) -> Option<()> {
-        let source = &batch.source;
-        let (id, number) = (source.description.id, source.number);
-        if !self.known.contains(&(id, number)) {
-            match self.items.try_send(Item::Source(source.clone())) {
-                Ok(()) => {
-                    self.known.retain(|(known, _)| *known != id);
-                    self.known.push((id, number));
-                }
-                Err(TrySendError::Full(_)) => return Some(self.lose(batch)),
-                Err(TrySendError::Disconnected(_)) => return None,
+    /// Offers a batch to the viewer, which loses it if its queue is full; returns true once the viewer has left.
+    fn has_left(&mut self, batch: &Arc<Batch>) -> bool {
+        let offered = self.introduce(&batch.source).and_then(|()| self.items.try_send(Item::Batch(batch.clone())));
+        match offered {
+            Ok(()) => false,
+            Err(TrySendError::Full(_)) => {
+                self.lost.fetch_add(batch.samples.len() as u64, Ordering::Relaxed);
+                false
             }
-        }
-        match self.items.try_send(Item::Batch(batch.clone())) {
-            Ok(()) => Some(()),
-            Err(TrySendError::Full(_)) => Some(self.lose(batch)),
-            Err(TrySendError::Disconnected(_)) => None,
+            Err(TrySendError::Disconnected(_)) => true,
         }
     }
 
-    fn lose(&self, batch: &Batch) {
-        self.lost.fetch_add(batch.samples.len() as u64, Ordering::Relaxed);
+    /// Tells the viewer of a source, once.
+    fn introduce(&mut self, source: &Arc<Source>) -> Result<(), TrySendError<Item>> {
+        let (id, number) = (source.description.id, source.number);
+        if !self.known.contains(&(id, number)) {
+            self.items.try_send(Item::Source(source.clone()))?;
+            self.known.retain(|(known, _)| *known != id);
+            self.known.push((id, number));
+        }
+        Ok(())
     }
 }

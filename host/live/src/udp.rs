@@ -48,7 +48,8 @@ impl Udp {
     }
 }
 
-/// Writes a sample as `{"timestamp": .., "joint": {"ID": {..}}}`; a quantity that is NaN is left out.
+/// Writes a sample as `{"timestamp": .., "joint": {"ID": {..}}}`; a quantity that is NaN is left out,
+/// null in a list.
 fn write_json(text: &mut String, source: &Source, sample: &Sample) {
     let (id, planets) = (source.description.id, source.description.planets);
     let _ = write!(text, "{{\"timestamp\":{},\"joint\":{{\"{id}\":{{", source.epoch + sample.time);
@@ -62,7 +63,8 @@ fn write_json(text: &mut String, source: &Source, sample: &Sample) {
         for ((name, _), values) in LISTS.iter().zip(lists) {
             let _ = write!(text, "\"{family}_{name}\":[");
             for (index, value) in values.iter().enumerate() {
-                let _ = write!(text, "{}{value}", if index > 0 { "," } else { "" });
+                let comma = if index > 0 { "," } else { "" };
+                let _ = if value.is_finite() { write!(text, "{comma}{value}") } else { write!(text, "{comma}null") };
             }
             text.push_str("],");
         }
@@ -84,7 +86,7 @@ mod tests {
         let description = Description { id: 3, name: "q1".to_owned(), planets: 1, ratio: 9.0, rated_torque: 8.0 };
         let mut sample = Sample { gap: 2e-5, ..Sample::at(0.5) };
         sample.meshes.add(ContactState::BackSide, -7.0);
-        sample.meshes.add(ContactState::Separated, 0.0);
+        sample.meshes.add(ContactState::Separated, f64::NAN);
         let mut text = String::new();
         write_json(&mut text, &Source { description, number: 0, epoch: 100.0 }, &sample);
         let value: Value = serde_json::from_str(&text).expect("it is JSON");
@@ -94,6 +96,6 @@ mod tests {
         assert_eq!(joint["motor_half_contact"][0], -1);
         assert_eq!(joint["motor_half_force_N"][0], -7);
         assert_eq!(joint["link_half_contact"][0], 0);
-        assert!(joint.get("wanted_rad").is_none(), "{text}");
+        assert!(joint["link_half_force_N"][0].is_null() && joint.get("wanted_rad").is_none(), "{text}");
     }
 }

@@ -67,10 +67,14 @@ fn foxglove(address: SocketAddr) -> Socket {
     connect(address, "/", &[("sec-websocket-protocol", "foxglove.websocket.v1")]).expect("Foxglove is served")
 }
 
+/// Next text. Samples may come before the answer to a request.
 fn text(socket: &mut Socket) -> Value {
-    match socket.read().expect("a message") {
-        Message::Text(text) => serde_json::from_str(&text).expect("JSON"),
-        other => panic!("a text, not {other:?}"),
+    loop {
+        match socket.read().expect("a message") {
+            Message::Text(text) => return serde_json::from_str(&text).expect("JSON"),
+            Message::Binary(_) => {}
+            other => panic!("a text or samples, not {other:?}"),
+        }
     }
 }
 

@@ -9,7 +9,8 @@ use report::workspace::workspace;
 
 /// Delay that a user does not notice.
 const AT_ONCE: Duration = Duration::from_millis(200);
-/// Attempts for each command and signal, at different times: on a busy machine most of them must be in time.
+/// Attempts for each command and signal, at different times. One in time is enough, because a busy machine delays any of
+/// them, and a command that waits for something is late each time.
 const TRIES: u32 = 5;
 
 /// Seen to fail with a counted instead of a measured pause, and with logs written to their end: 0.2 to 0.45 s.
@@ -39,8 +40,7 @@ fn working_command_stops_at_once() {
                 begin.elapsed()
             };
             let took: Vec<Duration> = (1..=TRIES).map(end).collect();
-            let most = took.iter().filter(|took| **took < AT_ONCE).count();
-            assert!(most > took.len() / 2, "{arguments:?}, {signal}: after {took:?}");
+            assert!(took.iter().any(|took| *took < AT_ONCE), "{arguments:?}, {signal}: after {took:?}");
         }
     }
 }

@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn rattling_teeth_have_a_share() {
-        let times = thin(20.0, |time| (time * 2000.0) as u64 % 2 == 0);
+        let times = thin(20.0, |time| ((time * 2000.0) as u64).is_multiple_of(2));
         let share = count(&times, 5.0, 20.0) as f64 / (15.0 * 20e3);
         assert!((0.2..0.35).contains(&share), "{share}");
         assert!(count(&times, 0.0, 0.5) > 9_900, "the first second is whole");

@@ -2,11 +2,13 @@
 //!
 //! Each threshold is halved and raised by half; each value runs a fixed set of closed loops (`runs`) in a child process,
 //! because a threshold gets its factor at process start (`model_core::numbers::sensitivity`). `change` finds the figure
-//! that moved most relative to its bound, and `page` keeps the table.
+//! that moved most relative to its bound; `unit_tests` finds the core's unit tests that fail under a factor; `page` keeps
+//! the table.
 
 mod change;
 mod page;
 mod runs;
+mod unit_tests;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,8 +22,9 @@ use report::progress::Progress;
 use report::workspace::workspace;
 use report::write::write_text;
 
-use page::{Page, Row};
+use page::{NOT_RUN, Page, Row};
 use runs::Figures;
+use unit_tests::UnitTests;
 
 /// Arguments of the program.
 #[derive(Debug, clap::Args)]
@@ -69,16 +72,25 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let path = arguments.out.clone().unwrap_or_else(|| workspace().join("docs/reference/sensitivity.md"));
     progress.stage("runs with the tuned thresholds");
     let base = runs::measure(None, arguments.seeds)?;
+    progress.stage("unit tests with the tuned thresholds");
+    let unit_tests = UnitTests::build()?;
     let mut page = Page::open(&path, &thresholds, &base, arguments.seeds);
-    let wanted = |threshold: &&Threshold| {
-        (arguments.only.is_empty() || arguments.only.iter().any(|name| name == threshold.name))
-            && (arguments.again || !page.is_measured(threshold.name))
-    };
-    let wanted: Vec<&Threshold> = thresholds.iter().filter(wanted).collect();
-    progress.run("measuring", wanted.len() as u64);
-    for threshold in wanted {
-        let row = measure_row(threshold, &base, arguments.seeds)?;
-        progress.print_above(&format!("{}: {}; {}", threshold.name, row[0], row[1]));
+    let is_wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
+    let work: Vec<(&Threshold, Row)> = thresholds
+        .iter()
+        .filter(|threshold| is_wanted(threshold.name))
+        .map(|threshold| (threshold, if arguments.again { Row::default() } else { page.row(threshold.name) }))
+        .filter(|(_, row)| !row.is_measured())
+        .collect();
+    progress.run("measuring", work.len() as u64);
+    for (threshold, mut row) in work {
+        if row.unit_tests == NOT_RUN {
+            row.unit_tests = unit_tests.cell(threshold)?;
+        }
+        if row.loops.iter().any(|cell| cell == NOT_RUN) {
+            row.loops = measure_loops(threshold, &base, arguments.seeds)?;
+        }
+        progress.print_above(&format!("{}: {}; {}; {}", threshold.name, row.loops[0], row.loops[1], row.unit_tests));
         page.set(threshold.name, row);
         write_text(&path, &page.text())?;
         progress.advance(1);
@@ -88,10 +100,10 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     output::print(&format!("table: {}\n", path.display()))
 }
 
-/// Cells of a threshold, one for each factor.
-fn measure_row(threshold: &Threshold, base: &Figures, seeds: u64) -> Outcome<Row> {
-    let mut row = Row::default();
-    for (cell, (factor, value)) in row.iter_mut().zip(FACTORS.into_iter().zip(&threshold.scaled)) {
+/// Cells of the closed loops under a threshold, one for each factor.
+fn measure_loops(threshold: &Threshold, base: &Figures, seeds: u64) -> Outcome<[String; 2]> {
+    let mut cells = [const { String::new() }; 2];
+    for (cell, (factor, value)) in cells.iter_mut().zip(FACTORS.into_iter().zip(&threshold.scaled)) {
         *cell = if *value == threshold.value {
             format!("stays {value}: rounded")
         } else {
@@ -101,5 +113,5 @@ fn measure_row(threshold: &Threshold, base: &Figures, seeds: u64) -> Outcome<Row
             return Err(Failure::interrupted("stopped by the user"));
         }
     }
-    Ok(row)
+    Ok(cells)
 }

@@ -8,11 +8,36 @@ use model_core::numbers::sensitivity::Threshold;
 
 use crate::runs::{FILES, Figures, digest_of};
 
-/// Cells of a threshold under the factors 0.5 and 1.5.
-pub type Row = [String; 2];
+/// Cells of a threshold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Row {
+    /// Closed loops under the factors 0.5 and 1.5.
+    pub loops: [String; 2],
+    /// Unit tests that fail under one of the factors.
+    pub unit_tests: String,
+}
 
-/// Cell of a threshold without figures.
-const NOT_RUN: &str = "not run";
+impl Default for Row {
+    fn default() -> Self {
+        Self { loops: [NOT_RUN; 2].map(str::to_owned), unit_tests: NOT_RUN.to_owned() }
+    }
+}
+
+impl Row {
+    /// True if every cell has a result.
+    pub fn is_measured(&self) -> bool {
+        self.loops.iter().chain([&self.unit_tests]).all(|cell| cell != NOT_RUN)
+    }
+
+    /// True if a changed value moves a figure or fails a unit test.
+    fn is_held(&self) -> bool {
+        let moves = |cell: &String| !["moves nothing", NOT_RUN].contains(&cell.as_str()) && !cell.starts_with("stays ");
+        self.loops.iter().any(moves) || self.unit_tests.starts_with('`')
+    }
+}
+
+/// Cell without a result.
+pub const NOT_RUN: &str = "not run";
 
 /// Page with the table.
 pub struct Page<'t> {
@@ -34,9 +59,9 @@ impl<'t> Page<'t> {
         page
     }
 
-    /// Returns true if the page has figures of a threshold.
-    pub fn is_measured(&self, name: &str) -> bool {
-        self.rows.contains_key(name)
+    /// Cells of a threshold.
+    pub fn row(&self, name: &str) -> Row {
+        self.rows.get(name).cloned().unwrap_or_default()
     }
 
     /// Sets the cells of a threshold.
@@ -47,22 +72,25 @@ impl<'t> Page<'t> {
     /// Text of the page.
     pub fn text(&self) -> String {
         let mut text = self.head.clone();
-        text += &format!("{} of {} thresholds have figures.\n", self.rows.len(), self.thresholds.len());
+        let measured = self.rows.values().filter(|row| row.is_measured());
+        let held = measured.clone().filter(|row| row.is_held()).count();
+        text += &format!(
+            "{} of {} thresholds are measured; {held} of them move a figure or fail a unit test.\n",
+            measured.count(),
+            self.thresholds.len()
+        );
         let mut folder = "";
         for threshold in self.thresholds {
             if threshold.folder != folder {
                 folder = &threshold.folder;
-                text +=
-                    &format!("\n## {folder}\n\n| threshold | value | origin | x0.5 | x1.5 |\n|---|---|---|---|---|\n");
+                text += &format!(
+                    "\n## {folder}\n\n| threshold | value | origin | x0.5 | x1.5 | unit tests |\n|---|---|---|---|---|---|\n"
+                );
             }
-            text += &self.row(threshold);
+            let Row { loops: [halved, raised], unit_tests } = self.row(threshold.name);
+            text += &format!("{}{halved} | {raised} | {unit_tests} |\n", row_start(threshold));
         }
         text
-    }
-
-    fn row(&self, threshold: &Threshold) -> String {
-        let [halved, raised] = self.rows.get(threshold.name).cloned().unwrap_or([NOT_RUN; 2].map(str::to_owned));
-        format!("{}{halved} | {raised} |\n", row_start(threshold))
     }
 }
 
@@ -75,8 +103,8 @@ fn row_start(threshold: &Threshold) -> String {
 fn kept_row(threshold: &Threshold, text: &str) -> Option<(String, Row)> {
     let start = row_start(threshold);
     let cells = text.lines().find_map(|line| line.strip_prefix(&start)?.strip_suffix(" |"))?;
-    let (halved, raised) = cells.split_once(" | ")?;
-    (halved != NOT_RUN).then(|| (threshold.name.to_owned(), [halved.to_owned(), raised.to_owned()]))
+    let [halved, raised, unit_tests] = cells.split(" | ").map(str::to_owned).collect::<Vec<_>>().try_into().ok()?;
+    Some((threshold.name.to_owned(), Row { loops: [halved, raised], unit_tests }))
 }
 
 fn digest_line(base: &Figures) -> String {
@@ -92,7 +120,9 @@ fn head(base: &Figures, seeds: u64) -> String {
 raises it by half, and runs closed loops around the reference plant on the host. A cell names the figure that moved most
 relative to its bound: figure with the tuned value, figure with the changed value, bound, and change over the bound. A
 figure bounded by zero counts as it is, 1 as 100 %. \"Moves nothing\": no bit of any run changed. \"Rounded\": an integer
-that rounding keeps at its value. Rows \"not run\" have no figures yet; the command measures them and keeps the others.
+that rounding keeps at its value. The last column names a unit test of the core that fails under one of the factors: many
+thresholds guard against faults that these files do not have. Cells \"not run\" have no result yet; the command fills them
+and keeps the others.
 
 With few seeds a figure shows that a threshold matters, not whether another value is better: bounds hold for the seeds of
 the test files, not for each seed. Thresholds of the wiring check are left out, because no test file runs the wiring check.
@@ -122,14 +152,33 @@ mod tests {
         let thresholds = [threshold("A.a", "2"), threshold("A.b", "2")];
         let path = std::env::temp_dir().join(format!("sensitivity-{}.md", std::process::id()));
         let mut page = Page::open(&path, &thresholds, &Vec::new(), 1);
-        page.set("A.a", ["moves nothing".into(), "t2: rms 1 to 2".into()]);
+        let row = Row {
+            loops: ["moves nothing".into(), "t2: rms 1 to 2".into()],
+            unit_tests: "`a::falls` and 1 more".into(),
+        };
+        page.set("A.a", row.clone());
         fs::write(&path, page.text()).unwrap();
         let again = Page::open(&path, &thresholds, &Vec::new(), 1);
         assert_eq!(again.text(), page.text());
-        assert!(again.is_measured("A.a") && !again.is_measured("A.b"));
+        assert_eq!(again.row("A.a"), row);
+        assert!(!again.row("A.b").is_measured());
         let other = [threshold("A.a", "3")];
-        assert!(!Page::open(&path, &other, &Vec::new(), 1).is_measured("A.a"), "another value is measured again");
+        assert!(!Page::open(&path, &other, &Vec::new(), 1).row("A.a").is_measured(), "another value is measured again");
         fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn page_counts_thresholds_that_are_held() {
+        let thresholds = [threshold("A.a", "2"), threshold("A.b", "2"), threshold("A.c", "2"), threshold("A.d", "2")];
+        let mut page = Page::open(Path::new("missing"), &thresholds, &Vec::new(), 1);
+        let row = |halved: &str, unit_tests: &str| Row {
+            loops: [halved.into(), "moves nothing".into()],
+            unit_tests: unit_tests.into(),
+        };
+        page.set("A.a", row("t2: rms 1 to 2", "none"));
+        page.set("A.b", row("stays 2: rounded", "none"));
+        page.set("A.c", row("moves nothing", "`a::falls`"));
+        assert!(page.text().contains("3 of 4 thresholds are measured; 2 of them move a figure or fail a unit test."));
     }
 
     /// Every field of a `thresholds!` in the core's sources is in the list.

@@ -136,6 +136,15 @@ impl CanBus {
         true
     }
 
+    /// Lets the other node send frames before all others that wait.
+    pub fn send_first(&mut self, frames: Vec<Frame>) {
+        // The first one may be on the bus.
+        let place = self.to_board.len().min(1);
+        for frame in frames.into_iter().rev() {
+            self.to_board.insert(place, frame);
+        }
+    }
+
     /// Ends the other node's frame: the board has received it, or it is sent again.
     pub fn is_received(&mut self, by_board: bool) {
         if by_board {

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use board::device::board::Board;
-use board::device::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, DriveOnBus, SPI_RATE};
+use board::device::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, DriveOnBus, SPI_RATE, default_drive_rate};
 use board::device::tick_time;
 use board::device::toolchain::Toolchain;
 use link::messages::Role;
+use parameters::JointParameters;
 use virtual_drive::maker::{MOTEUS, ODRIVE3};
 
 use crate::image::Image;
@@ -42,6 +43,12 @@ impl Work {
     }
 }
 
+/// Parameters of the joint.
+fn parameters() -> Result<JointParameters, String> {
+    let preset = joint_file::preset(JOINT).ok_or("no such joint")?;
+    Ok(joint_file::read(preset).map_err(|_| "a preset with problems")?.parameters)
+}
+
 /// Drive that the image of a board is: that of a board with CAN FD is a moteus, that of another one an ODrive 3.6.
 pub fn drive_of(board: &Board) -> Option<DriveOnBus> {
     let can = board.description.can?;
@@ -73,15 +80,10 @@ impl Images {
             Work::Plant => role(Role::Plant, DEFAULT_TICK_RATE),
             Work::Observer => role(Role::Observer, CONTROL_RATE),
             // The highest common rate that fits the chip.
-            Work::Loop => {
-                let parameters = joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?)
-                    .map_err(|_| "a preset with problems")?
-                    .parameters;
-                role(Role::Loop, tick_time::default_control_rate(&parameters, board, Role::Loop))
-            }
+            Work::Loop => role(Role::Loop, tick_time::default_control_rate(&parameters()?, board, Role::Loop)),
             Work::Drive => {
                 let drive = drive_of(board).ok_or("the board is no drive")?;
-                image::build_drive(&self.toolchain, &joint, board, &drive, CONTROL_RATE, false, &quiet)
+                image::build_drive(&self.toolchain, &joint, board, &drive, default_drive_rate(&parameters()?, board), false, &quiet)
             }
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, false, &quiet),
         };

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use board::device::board::Board;
+use board::device::image::default_drive_rate;
 use board_model::boards::{Subject, USUAL_COST, usual_surroundings};
 use board_model::can_twin::DriveOf;
 use board_model::checks::Named;
@@ -17,7 +18,6 @@ use board_model::wires::Surroundings;
 use board_model::{boards, checks, known, port};
 use clap::{Parser, Subcommand};
 use joint_file::named;
-use model_core::gears::design::Processor;
 
 #[derive(Parser)]
 #[command(version, about = "STM32F405, STM32G474, STM32G431 and STM32H743 at the level of registers")]
@@ -50,6 +50,9 @@ enum Command {
         /// Identifier of the image's drive, for the twin
         #[arg(long, value_name = "ID", default_value_t = 1)]
         id: u8,
+        /// Control rate of the image, for the twin [Hz, default: that of `joint image`]
+        #[arg(long, value_name = "HZ")]
+        rate: Option<u32>,
     },
     /// Runs every check on every board
     Check {
@@ -67,8 +70,8 @@ enum Command {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Run { image, board, source, cost, twin, joint, id } => {
-            run(&image, board, source, cost, twin.map(|maker| Twin { maker, joint, id }).as_ref())
+        Command::Run { image, board, source, cost, twin, joint, id, rate } => {
+            run(&image, board, source, cost, twin.map(|maker| Twin { maker, joint, id, rate }).as_ref())
         }
         Command::Check { board, only, full } => check(board, only.as_deref(), full),
     };
@@ -86,6 +89,7 @@ struct Twin {
     maker: String,
     joint: PathBuf,
     id: u8,
+    rate: Option<u32>,
 }
 
 /// Runs a board at its ports; violations are printed as they occur.
@@ -98,7 +102,7 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64, twin: Option<
             Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate), ..usual }
         }
     };
-    let (name, processor) = (board.argument.clone(), board.processor());
+    let (name, described) = (board.argument.clone(), board.clone());
     let subject = Subject { board, image: Image::read(image)?, tampers: &[] };
     let mut board = subject.start_at(surroundings, cost)?;
     let mut told = 0;
@@ -116,12 +120,14 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64, twin: Option<
         told = board.machine().wires.violations.all().len();
     })?;
     checks::clean(&board)?;
-    twin.map_or(Ok(()), |twin| compare(&board, processor, twin))
+    twin.map_or(Ok(()), |twin| compare(&board, &described, twin))
 }
 
 /// Compares the frames of a session with the twin's.
-fn compare(board: &board_model::cpu::Board<'_>, processor: Processor, twin: &Twin) -> Result<(), String> {
-    let joint = &named::load(&twin.joint).map_err(|failure| failure.to_string())?.file;
+fn compare(board: &board_model::cpu::Board<'_>, described: &Board, twin: &Twin) -> Result<(), String> {
+    let joint = &mut named::load(&twin.joint).map_err(|failure| failure.to_string())?.file;
+    joint.surroundings.control_rate = twin.rate.unwrap_or_else(|| default_drive_rate(&joint.parameters, described));
+    let processor = described.processor();
     let drive = DriveOf { maker: &twin.maker, id: twin.id, joint, processor };
     let bus = &board.machine().wires.can;
     let count = drive.compare(&bus.handed, &bus.taken, bus.ticks)?;

@@ -2,7 +2,7 @@
 //! and watches for bus-off. The drivers of the chips are in `board`.
 //!
 //! The queue cannot overflow while ticks occur: at 1 Mbit/s a frame takes at least 47 us, with data at 8 Mbit/s at least
-//! 30 us, so that at most four arrive in a tick of 100 us, and [`FRAMES`] fit. A stop is heard in the tick after its
+//! 30 us, so that at most seven arrive in a tick of 200 us, and [`FRAMES`] fit. A stop is heard in the tick after its
 //! last bit.
 
 use drives::Frame;

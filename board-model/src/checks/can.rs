@@ -2,6 +2,7 @@
 //! from bus-off.
 
 use board::device::board::Board as Described;
+use board::device::image::{default_drive_rate, has_room_for_all};
 use drives::Frame;
 
 use super::can_client::{Client, Mode, Order};
@@ -97,8 +98,9 @@ impl Session<'_> {
 
     /// Compares every frame so far with the twin's.
     fn compare(&mut self, subject: &Subject) -> Result<usize, String> {
-        let joint =
+        let mut joint =
             joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?).map_err(|_| "a broken preset")?;
+        joint.surroundings.control_rate = default_drive_rate(&joint.parameters, &subject.board);
         let drive = drive_of(&subject.board).ok_or("the board is no drive")?;
         let processor = subject.board.processor();
         let twin = DriveOf { maker: drive.maker.word, id: drive.id, joint: &joint, processor };
@@ -148,9 +150,7 @@ pub fn hears_in_a_flood(subject: &Subject) -> Result<String, String> {
     session.bus().to_board.extend(foreign);
     session.run(10 * MILLISECOND)?;
     let stop = session.client.frames(Order::Stop);
-    for frame in stop.into_iter().rev() {
-        session.bus().to_board.push_front(frame);
-    }
+    session.bus().send_first(stop);
     session.run(40 * MILLISECOND)?;
     if session.mode("after the stop in the flood")? == Mode::On {
         return Err("the stop is not heard".into());
@@ -194,6 +194,5 @@ pub fn recovers(subject: &Subject) -> Result<String, String> {
 
 /// Returns whether a board has an image of a drive, and the model its CAN.
 pub fn is_for(board: &Described) -> bool {
-    let has_room = board::device::image::has_room_for_all(board);
-    drive_of(board).is_some() && board.chip().has_can() && has_room
+    drive_of(board).is_some() && board.chip().has_can() && has_room_for_all(board)
 }

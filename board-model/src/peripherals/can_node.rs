@@ -2,14 +2,17 @@
 
 use crate::wires::{Time, Wires};
 
-/// Error counts of a warning and of error passive; a count above the last is bus-off.
+/// Error count of a warning.
 pub const WARNING: u32 = 96;
+/// Error count of error passive.
 pub const PASSIVE: u32 = 128;
+/// Largest error count of a node on the bus.
 pub const OFF: u32 = 255;
 
-/// Codes of the last error.
-pub const BIT_ERROR: u32 = 4;
-pub const NO_ACKNOWLEDGEMENT: u32 = 3;
+/// Code of the last error: a recessive bit was read as dominant.
+const BIT_ERROR: u32 = 4;
+/// Code of the last error: nobody acknowledged.
+const NO_ACKNOWLEDGEMENT: u32 = 3;
 
 /// State of a node.
 #[derive(Debug, Default)]

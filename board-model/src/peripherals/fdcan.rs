@@ -215,7 +215,8 @@ impl Fdcan {
             }
         }
         self.node.is_on_rate = faults.is_empty();
-        for (register, what) in faults.into_iter().filter(|_| self.has_bus(wires)) {
+        let has_bus = self.has_bus(wires);
+        for (register, what) in faults.into_iter().filter(|_| has_bus) {
             wires.violation(register, what, "RM0440 44.3.1, 44.4.3, 44.4.7");
         }
     }

@@ -67,7 +67,8 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             let joint = image::preset_file("q1");
             let maker = if board.description.can.is_some_and(|can| can.is_flexible()) { MOTEUS } else { ODRIVE3 };
             let drive = image::DriveOnBus { maker, id: 1 };
-            let built = image::build_drive(&toolchain, &joint, board, &drive, image::CONTROL_RATE, false, &say)?;
+            let rate = control_rate(Role::Loop);
+            let built = image::build_drive(&toolchain, &joint, board, &drive, rate, false, &say)?;
             sizes::check(board.chip(), "drive", &built)?;
             let bytes = built.flash_bytes;
             progress.clear();

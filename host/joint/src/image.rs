@@ -99,7 +99,7 @@ impl ImageRole {
             Self::Plant => image::DEFAULT_TICK_RATE,
             Self::Observer | Self::Loop => tick_time::default_control_rate(joint, board, self.role()),
             Self::SpiObserver => image::SPI_RATE,
-            Self::Drive => image::CONTROL_RATE,
+            Self::Drive => image::default_drive_rate(joint, board),
         }
     }
 

@@ -53,7 +53,7 @@ struct MovingJoint<'t, const N: usize> {
 }
 
 impl ImageTables {
-    /// Designs the tables of a joint for the chip of a board, at the control rate of the joint's file.
+    /// Designs the tables of a joint for the chip of a board, at the control rate of its surroundings.
     pub fn new(truth: &JointFile, board: &Board) -> Outcome<Self> {
         let designed = match truth.parameters.geometry.planets {
             1 => design::<1>(truth, board),

@@ -4,9 +4,11 @@
 use std::path::Path;
 
 use board::device::board::Board;
+use board::device::image::default_drive_rate;
 use drives::drive::{Feedback, Sensors, SetPoint, VirtualPower};
 use drives::{Drive, Settings, Turns};
 use live::{Description, Sample};
+use model_core::compensation::design::good_bandwidth;
 use model_core::compensation::{Compensation, Stage};
 use model_core::observer::{MAPPED, Observer, Samples, Source};
 use report::failure::{Failure, Outcome};
@@ -130,7 +132,10 @@ impl Prepared {
             let text = format!("joint = {:?}\n[profile]\nkind = \"sine\"\n", path.display().to_string());
             suite::from_text(&path.display().to_string(), &text, Path::new(""), choices.plant)?
         };
-        let case = Case::new(&test.file, &test.joint.text, choices.seed, test.motion.as_ref())?;
+        let mut case = Case::new(&test.file, &test.joint.text, choices.seed, test.motion.as_ref())?;
+        if let Some(board) = &choices.image {
+            case.truth.surroundings.control_rate = default_drive_rate(&case.truth.parameters, board);
+        }
         let designed = choices.compensation.then(|| case.design(&test.file)).transpose()?;
         let image = choices.image.as_ref().map(|board| ImageTables::new(&case.truth, board)).transpose()?;
         Ok(Self { id, name: path.display().to_string(), test, case, designed, image })
@@ -177,7 +182,11 @@ impl Prepared {
     /// Settings of a drive that fits the joint.
     fn settings(&self, choices: &Choices) -> Outcome<Settings> {
         let (file, truth) = (&self.test.file, &self.case.truth);
-        let bandwidth = self.case.bandwidth(file)?;
+        let bandwidth = match &choices.image {
+            Some(_) => good_bandwidth(&truth.parameters, &truth.surroundings)
+                .map_err(|error| Failure::new(format!("joint `{}` has no drive: {error}", truth.parameters.name)))?,
+            None => self.case.bandwidth(file)?,
+        };
         let design = DriveDesign::new(&truth.parameters, &truth.surroundings, bandwidth, file.output_encoder);
         Ok(design.settings(choices.drive.peak_current(), choices.supply, choices.is_calibrated))
     }

@@ -8,6 +8,7 @@ use joint_file::named;
 use link::messages::Role;
 use model_core::controller::design::ControlRequest;
 use object::{Object, ObjectSegment};
+use parameters::JointParameters;
 use sha2::{Digest, Sha256};
 use virtual_drive::maker::Name;
 
@@ -16,7 +17,7 @@ use super::board::Board;
 use super::compile::{FIRMWARE_PACKAGE, PROFILE, compile, write_atomically};
 pub use super::role::role_name;
 use super::sources::{self, hexadecimal};
-use super::tick_time::RateCheck;
+use super::tick_time::{RateCheck, default_control_rate};
 use super::toolchain::{TARGET_FLAGS, Toolchain};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
@@ -179,6 +180,11 @@ pub struct DriveOnBus {
     pub maker: Name,
     /// Identifier of the drive on its bus.
     pub id: u8,
+}
+
+/// Default control rate of a drive on CAN [Hz]: that of the role `loop`, which runs the same joint beside more work.
+pub fn default_drive_rate(joint: &JointParameters, board: &Board) -> u32 {
+    default_control_rate(joint, board, Role::Loop)
 }
 
 /// Builds a joint behind a drive on CAN, for a board whose file has `[can]`. Says if the board has no transceiver.

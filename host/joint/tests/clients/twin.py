@@ -76,7 +76,7 @@ def order(**keys):
 
 
 # Voltage of the supply, to which it returns after a fault [V].
-SUPPLY = round(order(status=True)["joints"][0]["bus_V"])
+SUPPLY = round(order(status=True)["joints"][0]["bus_V"]) if HAS_CONTROL else 48
 # Faults by the control socket: the command that causes the condition, and the one that ends it.
 # moteus and ODrive run down to 4 and 8 V by default.
 UNDER_VOLTAGE = {"supply_V": 3}, {"supply_V": SUPPLY}

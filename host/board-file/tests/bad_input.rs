@@ -510,8 +510,6 @@ fn unused_lines_reserve_pins() {
     let board = good(&with(&format!("{CAN}{PULSES}{ON_SPI}")));
     let pins: Vec<String> = board.unused_line_pins().iter().map(|(key, pin)| format!("{key} {pin}")).collect();
     let wanted = [
-        "can.send PB9",
-        "can.receive PB8",
         "encoder.motor.a PC6",
         "encoder.motor.b PC7",
         "encoder.motor.index PC8",
@@ -521,12 +519,30 @@ fn unused_lines_reserve_pins() {
         "encoder.output.in PB5",
     ];
     assert_eq!(pins, wanted);
-    // The firmware uses none of these pins.
-    assert_eq!(board.used_pins(), good(GOOD).used_pins());
+    // Of these pins the firmware uses those of CAN alone.
+    assert_eq!(board.used_pins(), good(&with(CAN)).used_pins());
+    assert_eq!(board.used_pins().len(), good(GOOD).used_pins().len() + 2);
     let taken = with(CAN).replace("pin = \"PC12\"", "pin = \"PB9\"");
     refused(&taken, "PB9 is used twice, for `can.send` and for `light.pin`", "\"PB9\"", "another pin");
     let gate = with(&CAN.replace("PB9", "PA12")).replace("PB12 = ", "PA12 = ");
     refused(&gate, "PA12 of `can.send` is never driven: brake resistor", "\"PA12\"", "take it out");
+}
+
+/// Bit rates of CAN are exact, and a board without a transceiver says so.
+#[test]
+fn can_rates_are_exact() {
+    let can = good(&with(CAN)).can.expect("it has one");
+    assert_eq!((can.bitrate, can.timing.prescaler, can.timing.quanta()), (1_000_000, 3, 14));
+    let of = |answer: &str| good(&with(&format!("{CAN}transceiver = \"{answer}\"\n"))).can.expect("it has one");
+    assert_eq!(of("yes").missing_transceiver(), None);
+    let missing = of("no").missing_transceiver().expect("a sentence");
+    assert!(missing.contains("no CAN transceiver") && missing.contains("TXD to PB9"), "{missing}");
+    let rate = with(&format!("{CAN}bitrate = 800_000\n"));
+    let message = "`bitrate` of 800000 bit/s cannot be made from the 42 MHz of CAN1: no prescaler gives whole quanta with \
+                   the sample point within 5 % of 87.5 %";
+    refused(&rate, message, "800_000", "1000000, 500000");
+    let fast = with(&format!("{CAN}data_bitrate = 2_000_000\n"));
+    refused(&fast, "CAN1 has no second bit rate: it is classical CAN", "2_000_000", "leave `data_bitrate` out");
 }
 
 /// Two SPI encoders may share clock and data, but no select.

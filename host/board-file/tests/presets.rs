@@ -90,7 +90,7 @@ fn first_three_boards_unchanged() {
     assert_eq!(h405.clock, ExternalClock::Crystal(8_000_000));
     assert_eq!((h405.serial.unit, h405.serial.baud, h405.serial.clock), ("USART1", 230_400, 84_000_000));
     let used: Vec<String> = h405.used_pins().iter().map(|(_, pin)| pin.to_string()).collect();
-    assert_eq!(used, ["PA9", "PA10", "PA4", "PA5", "PA6", "PA7", "PB0", "PC12"]);
+    assert_eq!(used, ["PA9", "PA10", "PA4", "PA5", "PA6", "PA7", "PB9", "PB8", "PB0", "PC12"]);
     assert_eq!((h405.enable.expect("it has one").on, h405.light.expect("it has one").on), (Level::High, Level::Low));
     let g474 = board("nucleo-g474re");
     assert_eq!((g474.probe_name.as_str(), g474.serial.unit), ("STM32G474RETx", "USART2"));
@@ -134,7 +134,7 @@ fn image_pins_would_harm_other_board() {
     assert!(harm.contains(&"serial.send PA9".to_owned()) && harm.contains(&"enable.pin PB0".to_owned()), "{harm:?}");
 }
 
-/// The generated source consists of 19 public constants.
+/// The generated source consists of 22 public constants.
 #[test]
 fn generated_constants_parse_as_rust() {
     for name in PRESETS {
@@ -142,7 +142,7 @@ fn generated_constants_parse_as_rust() {
         let file = syn::parse_file(&source).unwrap_or_else(|error| panic!("{name}: {error}\n{source}"));
         let public =
             |item: &syn::Item| matches!(item, syn::Item::Const(it) if matches!(it.vis, syn::Visibility::Public(_)));
-        assert!(file.items.len() == 19 && file.items.iter().all(public), "{source}");
+        assert!(file.items.len() == 22 && file.items.iter().all(public), "{source}");
     }
 }
 
@@ -210,10 +210,11 @@ fn cfgs_announced() {
             ("family", "stm32g4".to_owned()),
             ("serial", "usart2".to_owned()),
             ("spi_slave", "spi2".to_owned()),
-            ("select_line", "12".to_owned())
+            ("select_line", "12".to_owned()),
+            ("can", "fdcan1".to_owned())
         ]
     );
-    assert_eq!(of("moteus-r4")[2..], [("serial", "usart3".to_owned())]);
+    assert_eq!(of("moteus-r4")[2..], [("serial", "usart3".to_owned()), ("can", "fdcan1".to_owned())]);
 }
 
 /// A chip's name in the place of a board's is answered with the boards that have the chip.

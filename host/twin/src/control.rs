@@ -219,8 +219,10 @@ fn apply(order: &Order, faults: &[Fault], joints: &mut [Joint<'_>]) -> Reply {
         if let Some(rig) = joint.rig().filter(|_| order.end_faults) {
             rig.end_faults(now);
         }
-        for (rig, fault) in faults.iter().filter_map(|fault| Some((joint.rig()?, fault))) {
-            rig.inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
+        for fault in faults {
+            if let Some(rig) = joint.rig() {
+                rig.inject(&Fault { start: now + fault.start, end: now + fault.end, ..*fault }, seed);
+            }
         }
         if order.status {
             states.push(status(joint));

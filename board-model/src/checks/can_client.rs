@@ -71,7 +71,7 @@ impl Client {
                     _ => Mode::Off,
                 })
             }
-            Self::Moteus if frame.id == extended(0x100) => match data.get(..3)? {
+            Self::Moteus if frame.raw_id() == 0x100 => match data.get(..3)? {
                 [0x21, 0x00, 0] => Some(Mode::Off),
                 [0x21, 0x00, 10] => Some(Mode::On),
                 [0x21, 0x00, _] => Some(Mode::Stopped),

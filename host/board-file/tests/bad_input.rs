@@ -533,6 +533,23 @@ fn pins_of_can_are_used_once() {
     refused(&gate, "PA12 of `can.send` is never driven: brake resistor", "\"PA12\"", "take it out");
 }
 
+/// Bit rates of CAN are exact, and a board without a transceiver says so.
+#[test]
+fn can_rates_are_exact() {
+    let can = good(&with(CAN)).can.expect("it has one");
+    assert_eq!((can.bitrate, can.timing.prescaler, can.timing.quanta()), (1_000_000, 3, 14));
+    let of = |answer: &str| good(&with(&format!("{CAN}transceiver = \"{answer}\"\n"))).can.expect("it has one");
+    assert_eq!(of("yes").missing_transceiver(), None);
+    let missing = of("no").missing_transceiver().expect("a sentence");
+    assert!(missing.contains("no CAN transceiver") && missing.contains("TXD to PB9"), "{missing}");
+    let rate = with(&format!("{CAN}bitrate = 800_000\n"));
+    let message = "`bitrate` of 800000 bit/s cannot be made from the 42 MHz of CAN1: no prescaler gives whole quanta with \
+                   the sample point within 5 % of 87.5 %";
+    refused(&rate, message, "800_000", "1000000, 500000");
+    let fast = with(&format!("{CAN}data_bitrate = 2_000_000\n"));
+    refused(&fast, "CAN1 has no second bit rate: it is classical CAN", "2_000_000", "leave `data_bitrate` out");
+}
+
 /// Two SPI encoders may share clock and data, but no select.
 #[test]
 fn encoders_share_bus_not_select() {

@@ -83,7 +83,15 @@ impl Images {
             Work::Loop => role(Role::Loop, tick_time::default_control_rate(&parameters()?, board, Role::Loop)),
             Work::Drive => {
                 let drive = drive_of(board).ok_or("the board is no drive")?;
-                image::build_drive(&self.toolchain, &joint, board, &drive, default_drive_rate(&parameters()?, board), false, &quiet)
+                image::build_drive(
+                    &self.toolchain,
+                    &joint,
+                    board,
+                    &drive,
+                    default_drive_rate(&parameters()?, board),
+                    false,
+                    &quiet,
+                )
             }
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, false, &quiet),
         };

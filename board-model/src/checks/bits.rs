@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use board::device::image::DEFAULT_TICK_RATE;
 use board::profile::TorqueProfile;
 use board::session::{BoardHelp, Session};
-use board::device::image::DEFAULT_TICK_RATE;
 use board::twin;
 use link::messages::{RunMode, RunSettings};
 

@@ -72,8 +72,8 @@ impl Session<'_> {
         self.order(Order::Read);
         self.run(3 * MILLISECOND)?;
         let frames = self.heard();
-        let modes = frames.iter().filter_map(|frame| self.client.mode(frame));
-        modes.last().ok_or_else(|| format!("{when} none of {} frames has the mode", frames.len()))
+        let mut modes = frames.iter().filter_map(|frame| self.client.mode(frame));
+        modes.next_back().ok_or_else(|| format!("{when} none of {} frames has the mode", frames.len()))
     }
 
     fn expect(&mut self, expected: Mode, when: &str) -> Result<(), String> {

@@ -67,8 +67,11 @@ pub fn silence(subject: &Subject) -> Result<String, String> {
                 trip = Some(why);
             }
         }
-        let is_off =
-            if subject.board.description.enable.is_some() { is_switched(&talk, subject, false) } else { trip.is_some() };
+        let is_off = if subject.board.description.enable.is_some() {
+            is_switched(&talk, subject, false)
+        } else {
+            trip.is_some()
+        };
         if gone.is_none() && is_off {
             gone = Some(talk.board.borrow().now() - start);
         }

@@ -415,9 +415,9 @@ pub const ALL: &[Mistake] = &[
     Mistake::new(
         Stm32g474,
         Drive,
-        can::hears_in_a_flood,
+        can::recovers,
         &[at(0x4000_6450, Omit)],
-        "FDCAN: flags of interrupts are never cleared",
+        "FDCAN: flags of interrupts are never cleared, and idle starves",
     ),
     Mistake::new(Stm32g474, Drive, can::equals_twin, &[at(0x4002_1088, Omit)], "FDCAN: clocked by the crystal").short(),
     Mistake::new(

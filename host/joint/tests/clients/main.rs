@@ -25,14 +25,20 @@ fn passes(client: &str, drive: &str, twin_arguments: &[&str], words: &[&str]) {
     assert!(!summary.contains("malformed"), "{summary}");
 }
 
-/// As [`passes`] with a link of 0.5 N m: at the supply of a small drive its current limit does not hold the weight of
-/// Q1's link.
-fn passes_with_a_light_link(client: &str, drive: &str, words: &[&str]) {
-    let place = command::folder();
+/// Joint Q1 with a link of 0.5 N m.
+fn light_joint(place: &tempfile::TempDir) -> std::path::PathBuf {
     let file = place.path().join("light.toml");
     let q1 = joint_file::preset("q1").expect("a preset");
     let light = joint_file::change(q1, "drive_train.gravity_torque_N_m", "0.5").expect("a key");
     std::fs::write(&file, light).expect("written");
+    file
+}
+
+/// As [`passes`] with a link of 0.5 N m: at the supply of a small drive its current limit does not hold the weight of
+/// Q1's link.
+fn passes_with_a_light_link(client: &str, drive: &str, words: &[&str]) {
+    let place = command::folder();
+    let file = light_joint(&place);
     passes(client, drive, &[command::text(&file)], words);
 }
 

@@ -8,7 +8,6 @@ use report::workspace::workspace;
 
 use crate::command::{folder, text};
 use crate::environment::Environment;
-use crate::light_joint;
 
 /// Runs the script of a client against the image of a drive on a board.
 fn image_passes(client: &str, maker: &str, board: &str, joint: &str, words: &[&str]) {

@@ -53,6 +53,13 @@ impl Running {
 
 #[test]
 fn page_of_five_minutes_prints_what_it_shows() {
+    // A busy machine can stall twin or client for longer than a watchdog permits; a fault of either fails again.
+    if std::panic::catch_unwind(run_page).is_err() {
+        run_page();
+    }
+}
+
+fn run_page() {
     let page = fs::read_to_string(workspace().join("docs/drive-in-five-minutes.md")).expect("the page");
     let place: TempDir = folder();
     let (mut running, mut commands) = (None, 0);

@@ -31,12 +31,12 @@ pub fn to_range_down(value: f32, low: f32, high: f32, bits: u32) -> u32 {
     rounded_down(value, low, high, bits, 1.0 / 64.0)
 }
 
-/// Field between `low` and `high`, increased by `more` and rounded down.
-fn rounded_down(value: f32, low: f32, high: f32, bits: u32, more: f32) -> u32 {
+/// Field between `low` and `high`, with `offset` added before rounding down.
+fn rounded_down(value: f32, low: f32, high: f32, bits: u32, offset: f32) -> u32 {
     let most = most(bits);
     let value = if value.is_nan() { 0.0 } else { value };
     let share = (value.max(low).min(high) - low) / (high - low).max(f32::MIN_POSITIVE);
-    (share * most as f32 + more) as u32 & most
+    (share * most as f32 + offset) as u32 & most
 }
 
 fn most(bits: u32) -> u32 {

@@ -7,6 +7,7 @@ use drives::cybergear::{Answer, Model};
 use drives::drive::{Drive, Sensors, Settings};
 use drives::frame::{Frame, Id, Kind, extended, standard};
 use drives::{cia402, cybergear, damiao, feetech, moteus, odrive};
+use model_core::numbers::random::splitmix64;
 
 /// Frames of the short form.
 const SHORT: u64 = 400_000;
@@ -19,15 +20,12 @@ const SILENT_FRAMES: u64 = 64;
 /// Identifier of each drive.
 const ID: u8 = 1;
 
-/// Random numbers (splitmix64 after Steele, Lea and Flood, 2014).
+/// Random numbers.
 struct Random(u64);
 
 impl Random {
     fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ mixed >> 31
+        splitmix64(&mut self.0)
     }
 
     fn below(&mut self, end: u64) -> u64 {
@@ -67,10 +65,6 @@ impl Random {
     }
 }
 
-fn drive(settings: Settings) -> Drive {
-    Drive::new(settings)
-}
-
 /// Readings of a joint that turns.
 fn sensors(random: &mut Random) -> Sensors {
     let lost = random.below(64) == 0;
@@ -92,11 +86,11 @@ fn storm(
     decode: impl Fn(&Frame),
 ) {
     let mut random = Random(name.bytes().fold(1, |sum, byte| 31 * sum + u64::from(byte)));
-    let (mut unit, mut server, frames) = (drive(settings), (server(), server), count());
+    let (mut unit, mut server, frames) = (Drive::new(settings), (server(), server), count());
     let (mut answers, mut silence) = (0_u64, 0);
     for index in 0..frames {
         if index % FRAMES_A_LIFE == 0 || silence > SILENT_FRAMES {
-            (unit, server.0, silence) = (drive(settings), server.1(), 0);
+            (unit, server.0, silence) = (Drive::new(settings), server.1(), 0);
         }
         let frame = draw(&mut random);
         let mut answered = Vec::new();
@@ -267,7 +261,7 @@ fn cia402_survives_a_storm() {
 fn feetech_survives_a_storm() {
     let mut random = Random(9);
     let settings = feetech::settings(Settings::default());
-    let fresh = || (drive(settings), feetech::Server::new(ID, &settings));
+    let fresh = || (Drive::new(settings), feetech::Server::new(ID, &settings));
     let (mut unit, mut server) = fresh();
     let mut client = feetech::client::Answers::default();
     let (frames, mut answers, mut silence) = (count(), 0_u64, 0);

@@ -10,14 +10,15 @@ import time
 
 import pytest
 
-JOINT = shutil.which(os.environ.get("JOINT", "joint"))
+COMMAND = os.environ.get("JOINT") or "joint"
+JOINT = shutil.which(COMMAND)
 
 
 def pytest_sessionstart(session):
     """Ends the run before its first test if there is no command to test with."""
     if JOINT is None:
         raise pytest.UsageError(
-            f"the command `{os.environ.get('JOINT', 'joint')}` was not found: build it by `cargo build --package joint` "
+            f"the command `{COMMAND}` was not found: build it by `cargo build --package joint` "
             "and set JOINT to target/debug/joint of the repository, or put it on the PATH")
 
 

@@ -83,7 +83,7 @@ def test_brown_out_stops_a_damiao(twin):
         _, here = drive.order(0xFC)
         states = [drive.impedance(here, 100, 5)[0] for _ in range(20)]
         assert set(states) == {ENABLED}
-        twin.control(supply_V=supply / 3)  # It runs down to half.
+        twin.control(supply_V=supply / 3)  # The default under-voltage limit of a Damiao is half of its supply.
         states = [drive.impedance(here, 100, 5)[0] for _ in range(20)]
         assert set(states[2:]) == {UNDER_VOLTAGE}
         twin.control(supply_V=supply)

@@ -87,7 +87,7 @@ impl BusReport {
             );
         }
         for OffReport { node, count } in &self.off {
-            text += &format!("warning:  {node} went off the bus {count} times\n");
+            text += &format!("warning:  bus-off: {node}, {count} x\n");
         }
         text
     }

@@ -260,7 +260,7 @@ fn toml(fault: &Map<String, Value>) -> Result<String, Reply> {
 fn apply(order: &Order, faults: &[Fault], bus: &mut Bus<'_>) -> Reply {
     let mut states = Vec::new();
     let time_s = bus.time();
-    let noise = if order.end_faults { Some(0.0) } else { order.can_errors };
+    let noise = order.can_errors.or(order.end_faults.then_some(0.0));
     if let Some(share) = noise.filter(|_| order.joint.is_none()) {
         bus.set_noise(None, share);
     }

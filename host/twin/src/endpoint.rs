@@ -139,7 +139,7 @@ impl Endpoint {
         }
         let reader = far.try_clone().map_err(|error| Failure::new(format!("cannot read {path}: {error}")))?;
         let (events, gate) = (events.clone(), gate.clone());
-        thread::spawn(move || read_terminal(reader, &events, &gate));
+        thread::spawn(move || read_line(reader, 0, &events, &gate));
         let client = Client::new(0, name, Writer::Terminal(far));
         let name = link.map_or(path, |link| link.display().to_string());
         Ok((Self { name, _near_end: Some(near), link: link.map(Path::to_owned) }, Some(client)))
@@ -184,27 +184,6 @@ fn link_to(path: &str, link: &Path) -> Outcome<()> {
     })
 }
 
-fn read_terminal(mut far: File, events: &Sender<Event>, gate: &Gate) {
-    let mut buffer = [0_u8; 4096];
-    loop {
-        gate.wait();
-        let readable = poll(&mut [PollFd::new(&far.as_fd(), PollFlags::IN)], None);
-        if readable.is_err_and(|error| error != rustix::io::Errno::INTR) {
-            return;
-        }
-        match far.read(&mut buffer) {
-            Ok(count) if count > 0 => {
-                gate.read(count);
-                if events.send(Event::bytes(0, &buffer[..count])).is_err() {
-                    return;
-                }
-            }
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {}
-            _ => return,
-        }
-    }
-}
-
 fn listen(port: u16, events: &Sender<Event>, gate: &Gate) -> Outcome<Endpoint> {
     let cannot = |error: io::Error| {
         Failure::new(format!("cannot listen on 127.0.0.1:{port}: {error}"))
@@ -221,19 +200,20 @@ fn listen(port: u16, events: &Sender<Event>, gate: &Gate) -> Outcome<Endpoint> {
                 return;
             }
             let (events, gate) = (events.clone(), gate.clone());
-            thread::spawn(move || read_tcp(reader, id, &events, &gate));
+            thread::spawn(move || read_line(reader, id, &events, &gate));
         }
     });
     Ok(Endpoint { name, _near_end: None, link: None })
 }
 
-fn read_tcp(mut stream: TcpStream, id: ClientId, events: &Sender<Event>, gate: &Gate) {
+/// Hands the bytes of a client to the run until its line ends.
+fn read_line(mut line: impl Read + AsFd, id: ClientId, events: &Sender<Event>, gate: &Gate) {
     let mut buffer = [0_u8; 4096];
     loop {
         gate.wait();
         // The descriptor does not block, since it is the one that is written to.
-        let _ = poll(&mut [PollFd::new(&stream.as_fd(), PollFlags::IN)], None);
-        match stream.read(&mut buffer) {
+        let _ = poll(&mut [PollFd::new(&line.as_fd(), PollFlags::IN)], None);
+        match line.read(&mut buffer) {
             Ok(count) if count > 0 => {
                 gate.read(count);
                 if events.send(Event::bytes(id, &buffer[..count])).is_err() {

@@ -234,6 +234,7 @@ impl Session<'_> {
             let wait = clock.wait(time);
             if wait.is_zero() {
                 clock.begin(time);
+                self.let_clients_send();
                 self.period()?;
             }
             // An event is handled at once, and so are all that wait; then the next period has its turn.
@@ -287,7 +288,6 @@ impl Session<'_> {
     }
 
     fn period(&mut self) -> Outcome<()> {
-        self.let_clients_send();
         let packets = self.bus.period().map_err(broken)?;
         if let Some(log) = &mut self.log {
             log.sample(&self.bus.joints)?;
@@ -298,7 +298,8 @@ impl Session<'_> {
         self.send(&packets)
     }
 
-    /// Lets the clients send more frames, unless too many of theirs wait for the bus.
+    /// Lets the clients send more frames, unless too many of theirs wait for the bus. Not in lockstep, where the frames of
+    /// the clients advance the time and so empty the queue.
     fn let_clients_send(&self) {
         self.gate.set(self.bus.client_backlog() < MAX_WAITING);
     }

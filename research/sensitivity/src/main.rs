@@ -72,8 +72,6 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let path = arguments.out.clone().unwrap_or_else(|| workspace().join("docs/reference/sensitivity.md"));
     progress.stage("runs with the tuned thresholds");
     let base = runs::measure(None, arguments.seeds)?;
-    progress.stage("unit tests with the tuned thresholds");
-    let unit_tests = UnitTests::build()?;
     let mut page = Page::open(&path, &thresholds, &base, arguments.seeds);
     let is_wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
     let work: Vec<(&Threshold, Row)> = thresholds
@@ -82,9 +80,12 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         .map(|threshold| (threshold, if arguments.again { Row::default() } else { page.row(threshold.name) }))
         .filter(|(_, row)| !row.is_measured())
         .collect();
+    progress.stage("unit tests with the tuned thresholds");
+    let lacks_unit_tests = work.iter().any(|(_, row)| row.unit_tests == NOT_RUN);
+    let unit_tests = lacks_unit_tests.then(UnitTests::build).transpose()?;
     progress.run("measuring", work.len() as u64);
     for (threshold, mut row) in work {
-        if row.unit_tests == NOT_RUN {
+        if let Some(unit_tests) = unit_tests.as_ref().filter(|_| row.unit_tests == NOT_RUN) {
             row.unit_tests = unit_tests.cell(threshold)?;
         }
         if row.loops.iter().any(|cell| cell == NOT_RUN) {

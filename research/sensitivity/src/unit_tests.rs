@@ -60,7 +60,16 @@ impl UnitTests {
         if interruption::requested() {
             return Err(Failure::interrupted("stopped by the user"));
         }
-        Ok(failures(&String::from_utf8_lossy(&output.stdout)))
+        let failed = failures(&String::from_utf8_lossy(&output.stdout));
+        // The exit codes of the test harness: 0, and 101 after failed tests.
+        match (output.status.code(), failed.is_empty()) {
+            (Some(0), true) | (Some(101), false) => Ok(failed),
+            _ => Err(Failure::new(format!(
+                "the unit tests under {} ended with {}",
+                factor.map_or_else(|| "the tuned thresholds".to_owned(), |(name, factor)| format!("{factor} x {name}")),
+                output.status
+            ))),
+        }
     }
 }
 

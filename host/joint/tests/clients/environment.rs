@@ -54,14 +54,9 @@ impl Environment {
 
     /// Runs a script of this folder to its end, which must be success within `MAX_RUN`; returns what it printed.
     pub fn run(&self, script: &str, arguments: &[&str]) -> String {
-        let (is_success, printed) = self.attempt(script, arguments);
+        let (is_success, printed) = self.output(&scripts().join(script), arguments);
         assert!(is_success, "{script} failed:\n{printed}");
         printed
-    }
-
-    /// Runs a script of this folder to its end within `MAX_RUN`; returns true for success, and what it printed.
-    pub fn attempt(&self, script: &str, arguments: &[&str]) -> (bool, String) {
-        self.output(&scripts().join(script), arguments)
     }
 
     /// Runs a script to its end within `MAX_RUN`; returns true for success, and what it printed.

@@ -9,6 +9,7 @@ use tempfile::TempDir;
 
 use crate::command::folder;
 use crate::environment::Environment;
+use crate::once_more_if_failed;
 use crate::twin::Twin;
 
 /// Largest difference of two angles of the output [turns]: friction stops each motion at another place.
@@ -16,8 +17,8 @@ const TOLERANCE: f64 = 0.004;
 /// Turns of the rotor, in which an ODrive has its angles, in a turn of the output.
 const RATIO: f64 = 6.0;
 /// Paths of the page, which a test replaces by those of its twin.
-const PORT: &str = "\"/tmp/q1\"";
-const CONTROL: &str = "\"/tmp/q1.sock\"";
+const PORT: &str = "/tmp/q1";
+const CONTROL: &str = "/tmp/q1.sock";
 /// Keys whose values depend on the moment.
 const MOMENTARY: [&str; 3] = ["'time_s':", "'state':", "'gap_um':"];
 
@@ -30,12 +31,17 @@ struct Running {
 }
 
 impl Running {
-    /// Twin of a command `cargo joint twin q1 --drive NAME ...`.
-    fn start(command: &str) -> Self {
-        let mut words = command.split_whitespace().skip_while(|word| *word != "--drive").skip(1);
-        let drive = words.next().expect("the page names the drive");
+    /// Twin of a command, which must announce itself as the page shows.
+    fn start(command: &str, shown: &str) -> Self {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        let ["cargo", "joint", "twin", "q1", "--drive", drive, "--link", PORT, "--control", CONTROL] = words[..] else {
+            panic!("the test has no twin for `{command}`")
+        };
+        let twin = Twin::start(drive, &["q1"]);
+        let announced = twin.announcement().replace(twin.control(), CONTROL).replace(twin.port(), PORT);
+        assert!(shown.starts_with(&announced), "$ {command}\n{announced}\nbut the page has\n{shown}");
         let tolerance = if drive == "odrive" { RATIO * TOLERANCE } else { TOLERANCE };
-        Self { twin: Twin::start(drive, &[]), environment: Environment::new(drive), tolerance }
+        Self { twin, environment: Environment::new(drive), tolerance }
     }
 
     /// Output of `python SCRIPT [ARGUMENT]`.
@@ -43,7 +49,8 @@ impl Running {
         let (script, argument) = command.split_once(' ').unwrap_or((command, ""));
         let text = fs::read_to_string(place.join(script)).expect("the page has the script before it runs");
         let quoted = |path: &str| format!("{path:?}");
-        let text = text.replace(CONTROL, &quoted(self.twin.control())).replace(PORT, &quoted(self.twin.port()));
+        let text = text.replace(&quoted(CONTROL), &quoted(self.twin.control()));
+        let text = text.replace(&quoted(PORT), &quoted(self.twin.port()));
         let own = place.join("own.py");
         fs::write(&own, text).expect("written");
         let arguments = [argument.trim_matches('\'')];
@@ -53,10 +60,7 @@ impl Running {
 
 #[test]
 fn page_of_five_minutes_prints_what_it_shows() {
-    // A busy machine can stall twin or client for longer than a watchdog permits; a fault of either fails again.
-    if std::panic::catch_unwind(run_page).is_err() {
-        run_page();
-    }
+    once_more_if_failed(run_page);
 }
 
 fn run_page() {
@@ -83,7 +87,7 @@ fn run_page() {
                     } else {
                         // The twin before it ends first.
                         drop(running.take());
-                        running = Some(Running::start(command));
+                        running = Some(Running::start(command, shown));
                     }
                 }
             }

@@ -60,8 +60,13 @@ impl Line {
     pub fn hears_bytes(&mut self, bytes: &[u8]) {
         within(TIMEOUT, &format!("{:?}", String::from_utf8_lossy(bytes)), || {
             self.read();
-            self.heard.windows(bytes.len()).any(|part| part == bytes).then_some(())
+            self.has(bytes).then_some(())
         });
+    }
+
+    /// True if bytes are among those that arrived since the last [`Line::forget`].
+    pub fn has(&self, bytes: &[u8]) -> bool {
+        self.heard.windows(bytes.len()).any(|part| part == bytes)
     }
 
     /// Reads what there is and drops it with everything that arrived before.

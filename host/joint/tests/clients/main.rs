@@ -19,22 +19,23 @@ use environment::Environment;
 use report::workspace::workspace;
 use twin::Twin;
 
-/// Runs the script of a client against a drive, then ends the twin by Ctrl-C. A busy machine can stall twin or client for
-/// longer than a watchdog permits, so that a script may fail once; a fault of either fails again.
-fn passes(client: &str, drive: &str, twin_arguments: &[&str], words: &[&str]) {
-    let (environment, script) = (Environment::new(client), format!("{client}_client.py"));
-    let mut failed = String::new();
-    for _ in 0..2 {
-        let twin = Twin::start(drive, twin_arguments);
-        let (is_success, printed) = environment.attempt(&script, &[&[twin.port(), twin.control()], words].concat());
-        let summary = twin.end();
-        if is_success {
-            assert!(!summary.contains("malformed"), "{summary}");
-            return;
-        }
-        failed += &printed;
+/// Runs a check in real time, and once more if it failed: a busy machine can stall twin or client for longer than a
+/// watchdog permits; a fault of either fails again.
+fn once_more_if_failed(check: impl Fn() + std::panic::RefUnwindSafe) {
+    if std::panic::catch_unwind(&check).is_err() {
+        check();
     }
-    panic!("{script} failed twice:\n{failed}");
+}
+
+/// Runs the script of a client against a drive, then ends the twin by Ctrl-C.
+fn passes(client: &str, drive: &str, twin_arguments: &[&str], words: &[&str]) {
+    let environment = Environment::new(client);
+    once_more_if_failed(|| {
+        let twin = Twin::start(drive, twin_arguments);
+        environment.run(&format!("{client}_client.py"), &[&[twin.port(), twin.control()], words].concat());
+        let summary = twin.end();
+        assert!(!summary.contains("malformed"), "{summary}");
+    });
 }
 
 #[test]

@@ -15,6 +15,7 @@ use crate::command::{TIMEOUT, folder, interrupt, text, within};
 pub struct Twin {
     child: Child,
     out: BufReader<ChildStdout>,
+    announcement: String,
     port: String,
     control: String,
     place: TempDir,
@@ -41,6 +42,7 @@ impl Twin {
         let mut twin = Self {
             out: BufReader::new(child.stdout.take().expect("a pipe")),
             child,
+            announcement: String::new(),
             port: String::new(),
             control,
             place,
@@ -49,12 +51,18 @@ impl Twin {
         loop {
             let mut line = String::new();
             twin.out.read_line(&mut line).expect("text");
+            twin.announcement += &line;
             match line.split_once(':') {
                 Some(("port", port)) => twin.port = port.trim().to_owned(),
                 Some(("control", _)) => return twin,
                 _ => assert!(!line.is_empty(), "the twin ended at its start: {}", twin.errors()),
             }
         }
+    }
+
+    /// Lines from the start up to that of the control socket.
+    pub fn announcement(&self) -> &str {
+        &self.announcement
     }
 
     /// Path of the pseudo-terminal, or number of the TCP port.

@@ -117,8 +117,12 @@ impl Node {
         self.queue.pop_front().map(|waiting| waiting.frame)
     }
 
-    /// Counts an error as the transmitter of a frame. Returns true if the node goes off the bus.
+    /// Counts an error as the transmitter of a frame. Returns true if the node goes off the bus. A node that a command
+    /// took off the bus while its frame was on its way counts no more.
     pub fn fail_to_send(&mut self) -> bool {
+        if !self.is_on_bus() {
+            return false;
+        }
         self.transmit_errors += 8;
         let is_off = self.transmit_errors > OFF;
         if is_off {

@@ -155,7 +155,7 @@ impl Medium {
             if !self.events.is_empty() {
                 continue;
             }
-            if waiting.is_none_or(|since| since > until) || self.time > until {
+            if waiting.is_none_or(|since| since > until) {
                 return None;
             }
             self.begin(start);

@@ -3,10 +3,9 @@
 
 use std::collections::VecDeque;
 
+use bus_wires::bits::{Bits, Duration, ERROR_FRAME, INTERMISSION, priority};
 use drives::Frame;
-use drives::frame::{Id, Kind};
 
-use crate::can_frame;
 use crate::wires::{Pin, Time, cycles};
 
 /// Connection of the bus.
@@ -125,13 +124,13 @@ impl CanBus {
             },
         };
         let start = self.free_at.max(now);
-        let length = can_frame::duration(&frame, self.cable.bitrate, self.cable.data_bitrate);
+        let length = duration(&frame, &self.cable);
         let is_destroyed = sender != Node::Other && self.destroys > 0;
         if is_destroyed {
             self.destroys -= 1;
         }
         let end = start + length;
-        self.free_at = end + self.bits(can_frame::PAUSE);
+        self.free_at = end + self.bits(INTERMISSION.into());
         self.transfer = Some(Transfer { frame, sender, end, is_destroyed });
         true
     }
@@ -154,7 +153,7 @@ impl CanBus {
 
     /// Lets the next frame wait for an error frame.
     pub fn after_error(&mut self, now: Time) {
-        self.free_at = now + self.bits(can_frame::ERROR_FRAME + can_frame::PAUSE);
+        self.free_at = now + self.bits((ERROR_FRAME + INTERMISSION).into());
     }
 
     /// Time of the end of the frame on the bus.
@@ -163,17 +162,10 @@ impl CanBus {
     }
 }
 
-/// Order in the arbitration: the lower number wins. At equal first 11 bits a data frame of 11 bits wins, then a remote
-/// frame of 11 bits, then 29 bits.
-pub fn priority(frame: &Frame) -> u64 {
-    let is_remote = u64::from(frame.kind == Kind::Remote);
-    match frame.id {
-        Id::Standard(id) => u64::from(id.as_raw()) << 21 | is_remote << 20,
-        Id::Extended(id) => {
-            let id = u64::from(id.as_raw());
-            (id >> 18) << 21 | 1 << 20 | 1 << 19 | (id & 0x3_ffff) << 1 | is_remote
-        }
-    }
+/// Duration of a frame, from its start to the end of its last field.
+fn duration(frame: &Frame, cable: &CanCable) -> Time {
+    let Duration { nominal, data } = Bits::new(frame).duration();
+    cycles(nominal.into(), cable.bitrate) + cycles(data.into(), cable.data_bitrate.unwrap_or(cable.bitrate))
 }
 
 #[cfg(test)]
@@ -182,13 +174,11 @@ mod tests {
     use drives::frame::{extended, standard};
 
     #[test]
-    fn lower_identifier_wins() {
-        let data = |id: u16| Frame::classic(standard(id), &[]).unwrap();
-        let long = Frame::classic(extended(5 << 18), &[]).unwrap();
-        let remote = Frame::remote(standard(5), 0).unwrap();
-        let mut frames = [data(6), long.clone(), remote.clone(), data(5), data(4)];
-        frames.sort_by_key(priority);
-        assert_eq!(frames, [data(4), data(5), remote, long, data(6)]);
+    fn second_rate_shortens_data() {
+        let frame = Frame::flexible(extended(0x8001), &[0x55; 48], 0).unwrap();
+        let slow = CanCable { bitrate: 1_000_000, ..CanCable::default() };
+        let fast = CanCable { data_bitrate: Some(5_000_000), ..slow };
+        assert!(duration(&frame, &fast) * 3 < duration(&frame, &slow));
     }
 
     #[test]

@@ -5,7 +5,6 @@ pub mod as5047p;
 pub mod blocks;
 pub mod boards;
 pub mod can_bus;
-pub mod can_frame;
 pub mod can_twin;
 pub mod checks;
 pub mod chips;

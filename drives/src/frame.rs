@@ -5,6 +5,9 @@ pub use embedded_can::{ExtendedId, Id, StandardId};
 /// Most data bytes of a CAN FD frame.
 pub const MAX_DATA: usize = 64;
 
+/// Data lengths by length code (DLC).
+pub const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, MAX_DATA];
+
 /// Kind of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -113,10 +116,14 @@ pub fn extended(id: u32) -> Id {
     ExtendedId::new(id & ExtendedId::MAX.as_raw()).unwrap_or(ExtendedId::ZERO).into()
 }
 
-/// Least length of a CAN FD frame with room for `length` bytes: 0 to 8, 12, 16, 20, 24, 32, 48, 64.
+/// Length code (DLC) of the shortest frame with room for `length` bytes.
+pub fn length_code(length: usize) -> u32 {
+    LENGTHS.iter().position(|long| *long >= length).unwrap_or(LENGTHS.len() - 1) as u32
+}
+
+/// Least length of a CAN FD frame with room for `length` bytes.
 pub fn flexible_length(length: usize) -> usize {
-    const LONG: [usize; 7] = [12, 16, 20, 24, 32, 48, 64];
-    if length <= 8 { length } else { LONG.into_iter().find(|long| *long >= length).unwrap_or(MAX_DATA) }
+    LENGTHS.into_iter().find(|long| *long >= length).unwrap_or(MAX_DATA)
 }
 
 #[cfg(test)]

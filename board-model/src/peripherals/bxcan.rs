@@ -3,12 +3,13 @@
 
 use std::collections::VecDeque;
 
+use bus_wires::bits::priority;
 use drives::Frame;
 use drives::frame::{Id, Kind, extended, standard};
 
 use super::Peripheral;
 use super::can_node::{CanNode, OFF, PASSIVE, WARNING};
-use crate::can_bus::{Node, priority};
+use crate::can_bus::Node;
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Pin, Time, Wires};
 
@@ -216,7 +217,7 @@ impl Bxcan {
         let by_request = self.control() & TXFP != 0;
         let waiting = self.mailboxes.iter().enumerate().filter_map(|(place, mailbox)| {
             let (request, frame) = mailbox.pending.as_ref()?;
-            Some((place, if by_request { *request } else { priority(frame) }))
+            Some((place, if by_request { *request } else { priority(frame).into() }))
         });
         waiting.min_by_key(|(place, order)| (*order, *place)).map(|(place, _)| place)
     }

@@ -6,7 +6,7 @@
 //! Errata (ES0430): no edge filtering, no dedicated transmit buffers beside the FIFO, retransmission left on.
 
 use drives::Frame;
-use drives::frame::{Id, Kind, MAX_DATA, extended, flexible_length, standard};
+use drives::frame::{Id, Kind, LENGTHS, MAX_DATA, extended, length_code, standard};
 
 use super::bounded_wait::wait_until;
 use super::description::{CAN_DATA_TIMING, CAN_TIMING};
@@ -51,9 +51,6 @@ const CHANGE: u32 = 1 << 1;
 const FLEXIBLE_FRAMES: u32 = 1 << 8 | 1 << 9;
 /// Transceiver delay compensation, in DBTP.
 const COMPENSATION: u32 = 1 << 23;
-
-/// Data lengths by code.
-const LENGTHS: [u8; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 
 /// Receiving half: FIFO 0.
 pub struct Receiver(Unit);
@@ -175,7 +172,7 @@ impl CanSender for Sender {
 /// Data bytes of an element by its second word; a classical frame has 8 at most.
 fn length_of(control: u32) -> usize {
     let code = (control >> 16 & 0xf) as usize;
-    let length = usize::from(LENGTHS[code]);
+    let length = LENGTHS[code];
     if control & FLEXIBLE == 0 { length.min(8) } else { length }
 }
 
@@ -200,7 +197,5 @@ fn encode(frame: &Frame) -> (u32, u32) {
         Kind::Remote => (REMOTE, 0),
         Kind::Flexible(fast) => (0, FLEXIBLE | if fast { FAST } else { 0 }),
     };
-    let length = flexible_length(frame.length());
-    let code = LENGTHS.iter().position(|it| usize::from(*it) >= length).unwrap_or(15);
-    (id | remote, kind | (code as u32) << 16)
+    (id | remote, kind | length_code(frame.length()) << 16)
 }

@@ -1,9 +1,10 @@
 //! Third-party packages of the workspace: their source and their licence.
 
 use std::path::Path;
-use std::process::Command;
 
 use serde_json::Value;
+
+use crate::cargo;
 
 /// Prefix of the source of a package from a registry, as opposed to a repository.
 const REGISTRY: &str = "registry+";
@@ -99,12 +100,7 @@ pub fn unlicensed(metadata: &Value) -> Vec<String> {
 /// # Panics
 /// If Cargo cannot be run or reports an error.
 pub fn metadata(root: &Path) -> Value {
-    let cargo = || Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    let version = cargo().arg("-vV").output().expect("cargo runs").stdout;
-    let version = String::from_utf8_lossy(&version);
+    let version = cargo::output(root, &["-vV"]);
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("cargo names its host");
-    let arguments = ["metadata", "--format-version", "1", "--offline", "--filter-platform", host];
-    let output = cargo().args(arguments).current_dir(root).output().expect("cargo runs");
-    assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON")
+    cargo::metadata(root, &["--filter-platform", host])
 }

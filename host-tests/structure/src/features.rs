@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::process::Command;
+
+use crate::cargo;
 
 /// Sets of features with which a selection builds each package; a build script's packages may have another set.
 pub type Features = BTreeMap<String, BTreeSet<String>>;
@@ -12,11 +13,8 @@ pub type Features = BTreeMap<String, BTreeSet<String>>;
 /// # Panics
 /// If Cargo cannot be run or reports an error.
 pub fn of(root: &Path, selection: &[&str]) -> Features {
-    let arguments = ["tree", "--offline", "--prefix", "none", "--format", "{p}\t{f}"];
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    let output = cargo.args(arguments).args(selection).current_dir(root).output().expect("cargo runs");
-    assert!(output.status.success(), "cargo tree: {}", String::from_utf8_lossy(&output.stderr));
-    parse(&String::from_utf8_lossy(&output.stdout))
+    let arguments = ["tree", "--prefix", "none", "--format", "{p}\t{f}"];
+    parse(&cargo::output(root, &[&arguments, selection].concat()))
 }
 
 /// Features of the lines "package, tab, features".

@@ -3,10 +3,11 @@
 //! [`imports`] finds cycles between the folders of a crate, [`members`] checks imports between crates, [`page`] compares
 //! them with the tables in ARCHITECTURE.md, [`size`] counts lines. [`links`] follows the links of the Markdown pages,
 //! [`equations`] compares numbered equations of docs/theory with the code, [`unsafe_code`] compares every `unsafe` with its
-//! list, [`dependencies`] checks third-party packages, [`features`] checks that builds share packages.
+//! list, [`dependencies`] checks third-party packages, [`features`] checks that builds share packages. [`cargo`] asks Cargo.
 //!
 //! `cargo test -p structure -- --nocapture` also prints the table of crates.
 
+pub mod cargo;
 pub mod dependencies;
 pub mod equations;
 pub mod features;

@@ -3,9 +3,10 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use serde_json::Value;
+
+use crate::cargo;
 
 /// All members.
 pub struct Workspace {
@@ -68,11 +69,7 @@ impl Workspace {
     /// # Panics
     /// If Cargo cannot be run or rejects a manifest.
     pub fn read(root: &Path) -> Self {
-        let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
-        let arguments = ["metadata", "--format-version", "1", "--no-deps", "--offline"];
-        let output = Command::new(cargo).args(arguments).current_dir(root).output().expect("cargo runs");
-        assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
-        Self::parse(&serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON"))
+        Self::parse(&cargo::metadata(root, &["--no-deps"]))
     }
 
     fn parse(metadata: &Value) -> Self {

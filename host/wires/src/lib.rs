@@ -1,6 +1,7 @@
 //! Form of frames on a line: `slcan` and `fdcanusb` as text of USB adapters, `socketcand` as text over TCP, `serial` as
-//! bare bytes. The twin and the model of the boards' registers use them.
+//! bare bytes; and the bits of CAN frames on the bus. The twin and the model of the boards' registers use them.
 
+pub mod bits;
 mod fdcanusb;
 mod hex;
 mod serial;
@@ -9,14 +10,6 @@ mod socketcand;
 
 use clap::ValueEnum;
 use drives::Frame;
-
-/// Data lengths by length code.
-const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
-
-/// Length code (DLC) of the shortest frame with room for so many bytes.
-pub fn length_code(length: usize) -> u32 {
-    LENGTHS.iter().position(|long| *long >= length).unwrap_or(0xF) as u32
-}
 
 /// Form of frames on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

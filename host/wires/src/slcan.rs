@@ -12,9 +12,9 @@
 //! Frames and settings are not answered: python-can does not read the answers and would take them for frames.
 
 use drives::Frame;
-use drives::frame::{Id, Kind, extended, flexible_length, standard};
+use drives::frame::{Id, Kind, LENGTHS, extended, length_code, standard};
 
-use super::{LENGTHS, Lines, Packet, Received, Wire, hex, is_line_end, length_code};
+use super::{Lines, Packet, Received, Wire, hex, is_line_end};
 
 /// State of an adapter.
 #[derive(Debug, Default)]
@@ -98,7 +98,7 @@ fn decode(line: &str) -> Option<Frame> {
     }
     // Digits after the data are a time stamp.
     let data = hex::bytes(data.get(..2 * length)?)?;
-    (flexible_length(length) == length).then(|| Frame::with_kind(id, kind, &data))?
+    Frame::with_kind(id, kind, &data)
 }
 
 /// Identifier of a number, if it has room for it.

@@ -22,7 +22,7 @@ use report::progress::Progress;
 use report::workspace::workspace;
 use report::write::write_text;
 
-use page::{NOT_RUN, Page, Row};
+use page::{Page, Row};
 use runs::Figures;
 use unit_tests::UnitTests;
 
@@ -74,24 +74,32 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let base = runs::measure(None, arguments.seeds)?;
     let mut page = Page::open(&path, &thresholds, &base, arguments.seeds);
     let is_wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
-    let work: Vec<(&Threshold, Row)> = thresholds
-        .iter()
-        .filter(|threshold| is_wanted(threshold.name))
-        .map(|threshold| (threshold, if arguments.again { Row::default() } else { page.row(threshold.name) }))
-        .filter(|(_, row)| !row.is_measured())
-        .collect();
+    let work: Vec<&Threshold> = thresholds.iter().filter(|threshold| is_wanted(threshold.name)).collect();
+    if arguments.again {
+        work.iter().for_each(|threshold| page.set(threshold.name, Row::default()));
+    }
+    // The unit tests first: all of them take as long as the closed loops of a few thresholds.
+    let lacks = |page: &Page, lacks: fn(&Row) -> bool| -> Vec<&Threshold> {
+        work.iter().copied().filter(|threshold| lacks(&page.row(threshold.name))).collect()
+    };
     progress.stage("unit tests with the tuned thresholds");
-    let lacks_unit_tests = work.iter().any(|(_, row)| row.unit_tests == NOT_RUN);
-    let unit_tests = lacks_unit_tests.then(UnitTests::build).transpose()?;
-    progress.run("measuring", work.len() as u64);
-    for (threshold, mut row) in work {
-        if let Some(unit_tests) = unit_tests.as_ref().filter(|_| row.unit_tests == NOT_RUN) {
-            row.unit_tests = unit_tests.cell(threshold)?;
+    let untested = lacks(&page, Row::lacks_unit_tests);
+    let unit_tests = (!untested.is_empty()).then(UnitTests::build).transpose()?;
+    if let Some(tests) = unit_tests {
+        progress.run("unit tests", untested.len() as u64);
+        for threshold in untested {
+            let row = Row { unit_tests: tests.cell(threshold)?, ..page.row(threshold.name) };
+            progress.print_above(&format!("{}: {}", threshold.name, row.unit_tests));
+            page.set(threshold.name, row);
+            write_text(&path, &page.text())?;
+            progress.advance(1);
         }
-        if row.loops.iter().any(|cell| cell == NOT_RUN) {
-            row.loops = measure_loops(threshold, &base, arguments.seeds)?;
-        }
-        progress.print_above(&format!("{}: {}; {}; {}", threshold.name, row.loops[0], row.loops[1], row.unit_tests));
+    }
+    let unrun = lacks(&page, Row::lacks_loops);
+    progress.run("closed loops", unrun.len() as u64);
+    for threshold in unrun {
+        let row = Row { loops: measure_loops(threshold, &base, arguments.seeds)?, ..page.row(threshold.name) };
+        progress.print_above(&format!("{}: {}; {}", threshold.name, row.loops[0], row.loops[1]));
         page.set(threshold.name, row);
         write_text(&path, &page.text())?;
         progress.advance(1);

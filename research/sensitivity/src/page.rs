@@ -24,9 +24,14 @@ impl Default for Row {
 }
 
 impl Row {
-    /// True if every cell has a result.
-    pub fn is_measured(&self) -> bool {
-        self.loops.iter().chain([&self.unit_tests]).all(|cell| cell != NOT_RUN)
+    /// True if the unit tests have not run.
+    pub fn lacks_unit_tests(&self) -> bool {
+        self.unit_tests == NOT_RUN
+    }
+
+    /// True if closed loops have not run.
+    pub fn lacks_loops(&self) -> bool {
+        self.loops.iter().any(|cell| cell == NOT_RUN)
     }
 
     /// True if a changed value moves a figure or fails a unit test.
@@ -37,7 +42,7 @@ impl Row {
 }
 
 /// Cell without a result.
-pub const NOT_RUN: &str = "not run";
+const NOT_RUN: &str = "not run";
 
 /// Page with the table.
 pub struct Page<'t> {
@@ -72,7 +77,7 @@ impl<'t> Page<'t> {
     /// Text of the page.
     pub fn text(&self) -> String {
         let mut text = self.head.clone();
-        let measured = self.rows.values().filter(|row| row.is_measured());
+        let measured = self.rows.values().filter(|row| !row.lacks_unit_tests() && !row.lacks_loops());
         let held = measured.clone().filter(|row| row.is_held()).count();
         text += &format!(
             "{} of {} thresholds are measured; {held} of them move a figure or fail a unit test.\n",

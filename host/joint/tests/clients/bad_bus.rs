@@ -1,8 +1,6 @@
 //! CAN bus under equal identifiers, noise, bus-off and floods: the twin reports each cause, nothing hangs, and the drive
 //! goes to its safe state.
 
-use serde_json::Value;
-
 use crate::bad_clients::count;
 use crate::command::{joint, until};
 use crate::line::Line;
@@ -14,10 +12,6 @@ const MOTEUS_POSITION: &str = "can send 8001 1D01 BF\n";
 const MOTEUS_TURN: &str = "can send 8001 01000A0E200000C07FCDCC4C3E BF\n";
 /// Bus voltage of ODrive 1: request, and the beginning of the answer. No cyclic message has the identifier.
 const VOLTAGE: (&str, &str) = ("r0378\r", "t0378");
-
-fn bus(twin: &Twin) -> Value {
-    twin.order(r#"{"status": true}"#)["bus"].clone()
-}
 
 #[test]
 fn equal_identifiers_collide_and_are_named() {
@@ -31,9 +25,9 @@ fn equal_identifiers_collide_and_are_named() {
         line.say(MOTEUS_TURN);
         line.say(MOTEUS_POSITION);
         line.read();
-        bus(&twin)["destroyed"].as_u64() >= Some(16)
+        twin.bus()["destroyed"].as_u64() >= Some(16)
     });
-    let report = bus(&twin);
+    let report = twin.bus();
     assert_eq!(report["collisions"][0]["id"], "100", "{report}");
     assert_eq!(report["collisions"][0]["nodes"].to_string(), r#"["1 = q1","1 = d2"]"#);
     line.hears("rcv 100 ");
@@ -61,7 +55,7 @@ fn drive_without_a_bus_times_out() {
         line.say(MOTEUS_TURN);
         twin.status()["state"] == "TimedOut"
     });
-    until("the client is off the bus", || bus(&twin)["off"][0]["node"] == "the client");
+    until("the client is off the bus", || twin.bus()["off"][0]["node"] == "the client");
     twin.order(r#"{"end_faults": true}"#);
     line.forget();
     until("the drive answers", || {
@@ -107,7 +101,7 @@ fn noise_costs_time_and_no_frame() {
         line.read();
         answers(&line) == FRAMES
     });
-    let report = bus(&twin);
+    let report = twin.bus();
     assert!(report["destroyed"].as_u64() > Some(FRAMES as u64 / 20) && report["lost"] == 0, "{report}");
     twin.end();
 }
@@ -128,7 +122,7 @@ fn flood_takes_the_bus() {
     line.say(VOLTAGE.0);
     line.forget();
     line.hears(VOLTAGE.1);
-    let report = bus(&twin);
+    let report = twin.bus();
     // 10,000 frames of 131 bits, and the drive's cyclic messages, of which its queue holds 32.
     assert!(report["frames"].as_u64() > Some(FRAMES as u64), "{report}");
     assert!(report["load"].as_f64() > Some(0.5), "{report}");
@@ -181,7 +175,7 @@ fn frames_arrive_without_a_loss() {
         assert_eq!(answers(&line), BURST, "burst {index}");
         line.heard.clear();
     }
-    let report = bus(&twin);
+    let report = twin.bus();
     let summary = twin.end();
     println!("{frames} requests, {} frames on the bus\n{summary}", report["frames"]);
     assert!(!summary.contains("not read in time") && !summary.contains("malformed"), "{summary}");

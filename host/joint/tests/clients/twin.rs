@@ -90,6 +90,11 @@ impl Twin {
         self.order(r#"{"status": true}"#)["joints"][0].clone()
     }
 
+    /// State of the bus.
+    pub fn bus(&self) -> Value {
+        self.order(r#"{"status": true}"#)["bus"].clone()
+    }
+
     /// Ends the twin by Ctrl-C, which must be orderly; returns the summary.
     pub fn end(mut self) -> String {
         interrupt(&self.child);

@@ -2,7 +2,6 @@
 //!
 //! Documents: ISO 11898-1 (2015), chapters 10 (frames, bit stuffing) and 12 (error counters and states).
 
-mod bits;
 mod medium;
 mod node;
 mod statistics;

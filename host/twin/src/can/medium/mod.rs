@@ -1,6 +1,6 @@
 //! Wire that all nodes share: one frame at a time, chosen by arbitration; errors destroy frames for all nodes.
 //!
-//! Once the bus is idle, the waiting frame with the lowest key wins (see `bits::priority`). Two nodes that send the same
+//! Once the bus is idle, the waiting frame with the lowest key wins (see `wires::bits::priority`). Two nodes that send the same
 //! identifier both go on, up to the first bit in which their frames differ:
 //!
 //! - The node whose recessive bit is hidden has an error. If it is error active, its flag destroys the frame: both
@@ -15,8 +15,8 @@ use std::collections::VecDeque;
 
 use drives::Frame;
 use scenario::random::RandomStream;
+use wires::bits::{Bits, Duration, ERROR_FRAME, INTERMISSION, priority};
 
-use super::bits::{Bits, ERROR_FRAME, priority};
 use super::node::{ErrorState, Node};
 use super::statistics::Statistics;
 
@@ -186,8 +186,10 @@ impl Medium {
         let senders: Vec<usize> =
             (0..self.nodes.len()).filter(|index| contenders(&self.nodes[*index]) == Some(key)).collect();
         let (mut alive, mut stopped) = (senders.clone(), Vec::new());
-        let frames: Vec<(usize, Bits)> =
-            senders.iter().filter_map(|index| Some((*index, Bits::new(self.nodes[*index].front()?.0)))).collect();
+        let bits_of = |index: usize| Some((index, Bits::new(self.nodes[index].front()?.0)));
+        // Most frames have one sender and need no bits here.
+        let contested = if senders.len() > 1 { senders.as_slice() } else { &[] };
+        let frames: Vec<(usize, Bits)> = contested.iter().filter_map(|index| bits_of(*index)).collect();
         let bits = |index: usize| frames.iter().find(|(sender, _)| *sender == index).map(|(_, bits)| bits);
         let mut destroyed_at = None;
         while let Some(difference) = first_difference(&alive, bits) {
@@ -203,22 +205,30 @@ impl Medium {
         if senders.len() > 1 && (destroyed_at.is_some() || !stopped.is_empty()) {
             self.note_collision(&senders);
         }
-        let duration = alive.first().and_then(|index| bits(*index)).map(Bits::duration);
-        let (nominal, data) = duration.map_or((0, 0), |duration| (duration.nominal, duration.data));
+        let duration = self.duration(alive.first().copied());
         let is_noisy = alive.iter().any(|index| self.random.uniform() < self.nodes[*index].noise);
         if destroyed_at.is_none() && is_noisy {
-            destroyed_at = Some((self.random.uniform() * f64::from(nominal)) as u32);
+            destroyed_at = Some((self.random.uniform() * f64::from(duration.nominal)) as u32);
         }
         let is_alone = (0..self.nodes.len()).all(|index| senders.contains(&index) || !self.nodes[index].is_on_bus());
         let usual = self.rate.unwrap_or(Rate::USUAL);
-        let whole = f64::from(nominal) / usual.nominal + f64::from(data) / usual.data;
+        let time =
+            |nominal: u32, data: u32| f64::from(nominal + INTERMISSION) / usual.nominal + f64::from(data) / usual.data;
+        let Duration { nominal, data } = duration;
         let (outcome, time) = match destroyed_at {
-            Some(bits) => (Outcome::Destroyed, f64::from(bits + ERROR_FRAME) / usual.nominal),
-            None if is_alone => (Outcome::Unacknowledged, whole + f64::from(ERROR_FRAME) / usual.nominal),
-            None => (Outcome::Received(alive), if self.rate.is_some() { whole } else { 0.0 }),
+            Some(bits) => (Outcome::Destroyed, time(bits + ERROR_FRAME, 0)),
+            None if is_alone => (Outcome::Unacknowledged, time(nominal + ERROR_FRAME, data)),
+            None if self.rate.is_none() => (Outcome::Received(alive), 0.0),
+            None => (Outcome::Received(alive), time(nominal, data)),
         };
         self.statistics.busy += time;
         self.transmission = Some(Transmission { senders, stopped, outcome, end: start + time });
+    }
+
+    /// Time of a node's waiting frame on the bus.
+    fn duration(&self, sender: Option<usize>) -> Duration {
+        let frame = sender.and_then(|index| self.nodes[index].front());
+        frame.map_or(Duration::default(), |(frame, _)| Bits::new(frame).duration())
     }
 
     fn finish(&mut self, transmission: Transmission) {

@@ -1,24 +1,24 @@
-//! Bits of a frame on the wire, as far as arbitration, collisions and the time on the bus need them.
+//! Bits of a CAN frame on the wire (ISO 11898-1), as far as arbitration, collisions and the time on the bus need them.
 //!
 //! | part | bits |
 //! |---|---|
 //! | up to the control field | start 0; identifier 11, and with 29 bits SRR 1, IDE 1, 18 more; RTR or RRS, IDE, FDF, ... |
 //! | length code, data | 4, 8 a byte |
 //! | checksum | 15; CAN FD: stuff count 4, and 17 or 21 |
-//! | end | delimiter 1, acknowledgement 2, end of frame 7, intermission 3 |
+//! | end | delimiter 1, acknowledgement 2, end of frame 7 |
 //!
 //! After five equal bits the sender inserts one of the other value, up to the last bit of the checksum; in the checksum
 //! of CAN FD every fifth bit is a stuff bit instead.
 
 use drives::Frame;
-use drives::frame::Kind;
+use drives::frame::{Kind, length_code};
 
-use wires::length_code;
-
-/// Delimiter of the checksum, acknowledgement with its delimiter, end of frame, intermission.
-const END: u32 = 1 + 2 + 7 + 3;
-/// Flags of all nodes after an error (6 to 12 bits), delimiter 8, intermission 3.
-pub const ERROR_FRAME: u32 = 12 + 8 + 3;
+/// Delimiter of the checksum, acknowledgement with its delimiter, end of frame.
+const END: u32 = 1 + 2 + 7;
+/// Intermission between two frames, also after an error frame.
+pub const INTERMISSION: u32 = 3;
+/// Flags of all nodes after an error (6 to 12 bits), delimiter 8.
+pub const ERROR_FRAME: u32 = 12 + 8;
 /// Polynomial of the checksum of classical frames, of degree 15.
 const POLYNOMIAL: u16 = 0x4599;
 
@@ -34,7 +34,7 @@ pub struct Bits {
 }
 
 /// Time of a frame in bits at both bit rates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Duration {
     /// Bits at the nominal bit rate.
     pub nominal: u32,
@@ -90,7 +90,7 @@ impl Bits {
         Self { sequence, switch, fixed }
     }
 
-    /// Time on the bus, with the intermission after it.
+    /// Time on the bus, without the intermission after it.
     pub fn duration(&self) -> Duration {
         let switch = self.switch.unwrap_or(self.sequence.len());
         let (before, after) = self.stuff_bits(switch);
@@ -105,9 +105,8 @@ impl Bits {
     /// Number of the first bit in which two frames differ; `None` if they are alike.
     pub fn difference(&self, other: &Self) -> Option<usize> {
         let both = self.sequence.iter().zip(&other.sequence);
-        let differs = both.into_iter().position(|(mine, its)| mine != its);
-        let shorter = self.sequence.len().min(other.sequence.len());
-        differs.or_else(|| (self.sequence.len() != other.sequence.len()).then_some(shorter))
+        // Frames of different lengths differ in their length codes.
+        both.into_iter().position(|(mine, its)| mine != its)
     }
 
     /// True for a recessive bit, which any dominant one hides.
@@ -163,14 +162,14 @@ mod tests {
 
     #[test]
     fn frame_lengths_lie_between_the_bounds() {
-        // 44 bits and 8 a byte with 11 bits, 64 with 29, intermission 3; a stuff bit after each four of 34 or 54.
+        // 44 bits and 8 a byte with 11 bits, 64 with 29; a stuff bit after each four of 34 or 54.
         for (length, byte) in (0..=8).flat_map(|length| [0x00, 0x55, 0xFF].map(|byte| (length, byte))) {
             let data = vec![byte; length];
             let bits = |frame: Option<Frame>| Bits::new(&frame.unwrap()).duration();
             let [short, long] = [standard(0x123), extended(0x123_4567)].map(|id| bits(Frame::classic(id, &data)));
             let payload = 8 * length as u32;
-            assert!((47 + payload..=47 + payload + (34 + payload - 1) / 4).contains(&short.nominal), "{short:?}");
-            assert!((67 + payload..=67 + payload + (54 + payload - 1) / 4).contains(&long.nominal), "{long:?}");
+            assert!((44 + payload..=44 + payload + (34 + payload - 1) / 4).contains(&short.nominal), "{short:?}");
+            assert!((64 + payload..=64 + payload + (54 + payload - 1) / 4).contains(&long.nominal), "{long:?}");
             assert_eq!((short.data, long.data), (0, 0));
         }
     }
@@ -195,7 +194,7 @@ mod tests {
         let duration = Bits::new(&frame).duration();
         // 4 + 64 x 8 bits, ESI, 25 bits of the checksum with 7 stuff bits, delimiter; 0x55 needs no stuff bits.
         assert_eq!(duration.data, 1 + 4 + 512 + 25 + 7 + 1);
-        assert!((35 + 12..35 + 12 + 8).contains(&duration.nominal), "{duration:?}");
+        assert!((35 + 9..35 + 9 + 8).contains(&duration.nominal), "{duration:?}");
         let slow = Frame::with_kind(extended(0x8001), Kind::Flexible(false), &[0x55; 64]).unwrap();
         assert_eq!(Bits::new(&slow).duration().data, 0);
     }

@@ -1,14 +1,56 @@
 //! Faults of the teeth: grown backlash, and a tooth with a softer mesh.
 
 use std::f64::consts::TAU;
+use std::fmt;
 
 use model_core::virtual_joint::fault::FaultKind;
 use parameters::JointParameters;
-use reference::joint::Observation;
+use reference::joint::{Observation, mean_half_backlash};
 
 use super::active::ActiveFault;
-use crate::file::{HostOnlyFault, fault_is_active};
-use crate::plant::{Teeth, half_backlash};
+use crate::file::{Fault, HostOnlyFault, fault_is_active};
+use crate::plant::{PlantName, Teeth};
+
+/// Reason for which no tooth of a plant can break.
+#[derive(Debug, PartialEq, Eq)]
+pub enum NoTooth {
+    /// The joint of this name is an equivalent gear.
+    EquivalentGear(String),
+    /// The plant is the core's.
+    Core,
+}
+
+impl NoTooth {
+    /// Remedy.
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::EquivalentGear(_) => "leave the broken tooth out, or name a joint with teeth",
+            Self::Core => "start with --plant reference",
+        }
+    }
+}
+
+impl fmt::Display for NoTooth {
+    fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::EquivalentGear(name) => {
+                write!(text, "joint `{name}` is an equivalent gear, which has no tooth to break")
+            }
+            Self::Core => write!(text, "the core's planets share their stiffness, so no tooth of it can break"),
+        }
+    }
+}
+
+/// Rejects a broken tooth of a plant without teeth.
+pub fn check_broken_tooth(faults: &[Fault], joint: &JointParameters, plant: PlantName) -> Result<(), NoTooth> {
+    let is_broken = |fault: &Fault| matches!(fault.kind, FaultKind::Other(HostOnlyFault::BrokenTooth(_)));
+    match plant {
+        _ if !faults.iter().any(is_broken) => Ok(()),
+        _ if joint.equivalent_gear().is_some() => Err(NoTooth::EquivalentGear(joint.name.to_string())),
+        PlantName::Core => Err(NoTooth::Core),
+        PlantName::Reference => Ok(()),
+    }
+}
 
 /// Original and current state of the teeth.
 #[derive(Debug, Clone)]
@@ -25,7 +67,7 @@ pub(super) struct ToothState {
 impl ToothState {
     /// Original state of the teeth.
     pub fn new(joint: &JointParameters) -> Self {
-        let half_backlash = half_backlash(joint);
+        let half_backlash = mean_half_backlash(joint);
         Self {
             half_backlash,
             half_backlash_now: half_backlash,

@@ -4,6 +4,8 @@
 #[path = "../command/mod.rs"]
 mod command;
 mod node;
+#[path = "../scripts/mod.rs"]
+mod scripts;
 
 use std::fs;
 use std::io::{BufRead, BufReader};

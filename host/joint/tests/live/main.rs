@@ -128,7 +128,7 @@ fn twin_waits_for_viewer_beside_plotjuggler() {
 fn hil_shows_tested_run_from_memory() {
     let place = folder();
     let file = place.path().join("memory.toml");
-    let test = "duration_s = 2\nseeds = [1]\nprofile = \"T2\"\n[controller]\nrivals = []\nfrom_memory = true\n";
+    let test = "duration_s = 1\nsettle_s = 0.2\nseeds = [1]\nprofile = \"T2\"\n[controller]\nrivals = []\nfrom_memory = true\n";
     fs::write(&file, test).expect("room");
     let out = place.path().join("out");
     let hil = ["hil", text(&file), "--host", "--live=127.0.0.1:0", "--live-wait", "--out", text(&out)];

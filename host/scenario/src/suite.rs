@@ -8,7 +8,7 @@ use link::messages::Role;
 use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded_motion};
-use super::faults::{NoTooth, check_broken_tooth};
+use super::faults::check_broken_tooth;
 use super::file::{self, TestFile, Trajectory};
 use super::plant::{PlantName, reject_effects};
 use super::record::NotRun;
@@ -159,13 +159,9 @@ fn checked_test(name: String, text: String, file: TestFile, folder: &Path, plant
     let joint = load_joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
-    check_broken_tooth(&file.faults, &joint.file.parameters, plant).map_err(|refused| {
-        let help = match refused {
-            NoTooth::EquivalentGear(_) => refused.help(),
-            NoTooth::Core => "run it with --plant reference, with --host or --role observer",
-        };
-        Failure::new(format!("{name}: {refused}")).with_help(help)
-    })?;
+    let help = "run it with --plant reference, with --host or --role observer";
+    check_broken_tooth(&file.faults, &joint.file.parameters, plant, help)
+        .map_err(|failure| failure.while_doing(&name))?;
     let motion = recorded_motion(&file, folder).map_err(|failure| failure.while_doing(&name))?;
     if let Some(motion) = motion.as_ref().filter(|_| !file.states_duration) {
         check_length(motion.duration(), "duration_s").map_err(|failure| failure.while_doing(&name))?;

@@ -240,7 +240,9 @@ fn read(line: &str, bus: &Bus<'_>) -> Result<(Order, Vec<Fault>), Reply> {
     };
     let concerned = joints.iter().filter(|joint| order.joint.is_none_or(|id| joint.id == id));
     for joint in concerned {
-        joint.check_faults(&faults).map_err(|no_tooth| refused(no_tooth.to_string(), no_tooth.help()))?;
+        joint
+            .check_faults(&faults)
+            .map_err(|failure| refused(failure.message(), failure.help().unwrap_or_default()))?;
     }
     Ok((order, faults))
 }

@@ -16,7 +16,7 @@ use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
 use scenario::execution::{RunSpec, setup};
-use scenario::faults::{NoTooth, check_broken_tooth};
+use scenario::faults::check_broken_tooth;
 use scenario::file::Fault;
 use scenario::live_view::{description, true_sample};
 use scenario::plant::PlantName;
@@ -296,9 +296,10 @@ impl Joint<'_> {
     }
 
     /// Rejects faults that the plant cannot have.
-    pub fn check_faults(&self, faults: &[Fault]) -> Result<(), NoTooth> {
+    pub fn check_faults(&self, faults: &[Fault]) -> Outcome<()> {
+        let help = "start the twin with --plant reference";
         match &self.plant {
-            Plant::Rig(plant) => check_broken_tooth(faults, &plant.case.truth.parameters, plant.model),
+            Plant::Rig(plant) => check_broken_tooth(faults, &plant.case.truth.parameters, plant.model, help),
             Plant::Image(_) => Ok(()),
         }
     }

@@ -1,7 +1,6 @@
 //! Faults of the teeth: grown backlash, and a tooth with a softer mesh.
 
 use std::f64::consts::TAU;
-use std::fmt;
 
 use model_core::virtual_joint::fault::FaultKind;
 use parameters::JointParameters;
@@ -10,46 +9,21 @@ use reference::joint::{Observation, mean_half_backlash};
 use super::active::ActiveFault;
 use crate::file::{Fault, HostOnlyFault, fault_is_active};
 use crate::plant::{PlantName, Teeth};
+use report::failure::{Failure, Outcome};
 
-/// Reason for which no tooth of a plant can break.
-#[derive(Debug, PartialEq, Eq)]
-pub enum NoTooth {
-    /// The joint of this name is an equivalent gear.
-    EquivalentGear(String),
-    /// The plant is the core's.
-    Core,
-}
-
-impl NoTooth {
-    /// Remedy.
-    pub fn help(&self) -> &'static str {
-        match self {
-            Self::EquivalentGear(_) => "leave the broken tooth out, or name a joint with teeth",
-            Self::Core => "start with --plant reference",
-        }
-    }
-}
-
-impl fmt::Display for NoTooth {
-    fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::EquivalentGear(name) => {
-                write!(text, "joint `{name}` is an equivalent gear, which has no tooth to break")
-            }
-            Self::Core => write!(text, "the core's planets share their stiffness, so no tooth of it can break"),
-        }
-    }
-}
-
-/// Rejects a broken tooth of a plant without teeth.
-pub fn check_broken_tooth(faults: &[Fault], joint: &JointParameters, plant: PlantName) -> Result<(), NoTooth> {
+/// Rejects a broken tooth of a plant without teeth; `help` is the remedy for the core's plant.
+pub fn check_broken_tooth(faults: &[Fault], joint: &JointParameters, plant: PlantName, help: &str) -> Outcome<()> {
     let is_broken = |fault: &Fault| matches!(fault.kind, FaultKind::Other(HostOnlyFault::BrokenTooth(_)));
-    match plant {
-        _ if !faults.iter().any(is_broken) => Ok(()),
-        _ if joint.equivalent_gear().is_some() => Err(NoTooth::EquivalentGear(joint.name.to_string())),
-        PlantName::Core => Err(NoTooth::Core),
-        PlantName::Reference => Ok(()),
-    }
+    let (message, help) = match plant {
+        _ if !faults.iter().any(is_broken) => return Ok(()),
+        _ if joint.equivalent_gear().is_some() => (
+            format!("joint `{}` is an equivalent gear, which has no tooth to break", joint.name),
+            "leave the broken tooth out, or name a joint with teeth",
+        ),
+        PlantName::Core => ("the core's planets share their stiffness, so no tooth of it can break".to_owned(), help),
+        PlantName::Reference => return Ok(()),
+    };
+    Err(Failure::new(message).with_help(help))
 }
 
 /// Original and current state of the teeth.

@@ -9,14 +9,16 @@ use std::time::{Duration, Instant};
 use report::interruption;
 
 use crate::hub::Parcel;
+use crate::pace::Pace;
 use crate::sample::Sample;
 use crate::shared::Shared;
 use crate::source::Source;
 
 /// Samples of a parcel: a channel of single samples would wake the hub too often.
 const PARCEL: usize = 64;
-/// Longest time of a sample in an unfinished parcel, on the time of the run [s].
-const MAX_AGE: f64 = 0.01;
+/// Age of a parcel on the clock at which its next sample completes it. An age on the time of the run would make a run in
+/// slow motion arrive in jerks.
+const MAX_AGE: Duration = Duration::from_millis(10);
 /// Longest sleep, so that Ctrl-C is heard.
 const MAX_SLEEP: Duration = Duration::from_millis(20);
 
@@ -26,16 +28,11 @@ pub struct Feed {
     hub: SyncSender<Parcel>,
     shared: Arc<Shared>,
     parcel: Vec<Sample>,
+    /// Moment of the first sample in the parcel.
+    begun: Instant,
     pace: Option<Pace>,
-    /// True for the feed of the only run that shows itself.
+    /// True if the feed holds the claim of a run on the view, which ends with the feed.
     is_claim: bool,
-}
-
-/// Pace of a run that follows the clock.
-#[derive(Debug, Clone, Copy)]
-struct Pace {
-    start: Instant,
-    speed: f64,
 }
 
 impl Feed {
@@ -47,37 +44,36 @@ impl Feed {
         speed: Option<f64>,
         is_claim: bool,
     ) -> Self {
-        let pace = speed.map(|speed| Pace { start: Instant::now(), speed });
-        Self { source, hub, shared, parcel: Vec::new(), pace, is_claim }
+        let begun = Instant::now();
+        let pace = speed.map(|speed| Pace::starting(begun, speed));
+        Self { source, hub, shared, parcel: Vec::new(), begun, pace, is_claim }
     }
 
-    /// Publishes the sample of a period at a time of the run [s]; computes it only if somebody watches.
+    /// Publishes the sample of a period at a time of the run [s]; computes the sample only if it has a receiver.
     pub fn publish(&mut self, time: f64, sample: impl FnOnce() -> Sample) {
         if let Some(pace) = self.pace {
             self.wait(pace, time);
         }
-        if !self.shared.is_watched() {
+        if !self.shared.has_receiver() {
             return;
         }
         if self.parcel.is_empty() {
             self.parcel.reserve_exact(PARCEL);
+            self.begun = Instant::now();
         }
         self.parcel.push(sample());
-        let first = self.parcel.first().map_or(time, |first| first.time);
-        if self.parcel.len() == PARCEL || time - first >= MAX_AGE {
+        if self.parcel.len() == PARCEL || self.begun.elapsed() >= MAX_AGE {
             self.send();
         }
     }
 
     fn wait(&self, pace: Pace, time: f64) {
-        let due = pace.start + Duration::from_secs_f64((time / pace.speed).max(0.0));
-        while let Some(rest) = due.checked_duration_since(Instant::now()).filter(|rest| rest.as_millis() > 0) {
-            if interruption::requested() {
-                return;
-            }
+        let mut rest = pace.wait(time);
+        while rest.as_millis() > 0 && !interruption::requested() {
             let sleep = rest.min(MAX_SLEEP);
             thread::sleep(sleep);
             self.shared.waited.fetch_add(sleep.as_nanos() as u64, Ordering::Relaxed);
+            rest = pace.wait(time);
         }
     }
 

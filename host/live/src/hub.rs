@@ -13,7 +13,7 @@ use crate::udp::Udp;
 
 /// Parcels between run and hub: 32,768 samples, a second and a half at 20 kHz.
 pub const PARCELS: usize = 512;
-/// Interval between two batches: a frame of a usual screen and a half.
+/// Interval between two batches: one and a half frames of a screen at 60 Hz.
 const INTERVAL: Duration = Duration::from_millis(25);
 /// Largest batch; larger ones would delay the first sample of a fast run.
 const MAX_BATCH: usize = 512;

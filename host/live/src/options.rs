@@ -2,15 +2,22 @@
 
 use std::net::{SocketAddr, ToSocketAddrs};
 
+use clap::ArgGroup;
 use report::failure::{Failure, Outcome};
+
+use crate::pace::parse_speed;
 
 /// Default address of page and Foxglove: the port that Foxglove offers.
 const PAGE_ADDRESS: &str = "127.0.0.1:8765";
 /// Default address of PlotJuggler's UDP server.
 const UDP_ADDRESS: &str = "127.0.0.1:9870";
 
+/// Group of the options that ask for a view; the other options need one of them.
+const VIEW: &str = "live_view";
+
 /// Options of the live view.
 #[derive(Debug, Clone, Default, clap::Args)]
+#[command(group(ArgGroup::new(VIEW).args(["live", "live_udp"]).multiple(true)))]
 pub struct LiveOptions {
     /// Live view as a page and for Foxglove [default address: 127.0.0.1:8765; port 0 lets the system choose]
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, default_missing_value = PAGE_ADDRESS)]
@@ -19,7 +26,7 @@ pub struct LiveOptions {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, default_missing_value = UDP_ADDRESS)]
     pub live_udp: Option<String>,
     /// Allows --live and --live-udp addresses beyond this machine; viewers on other machines cannot command the joint
-    #[arg(long)]
+    #[arg(long, requires = VIEW)]
     pub live_network: bool,
     /// Starts the run when the first viewer has connected
     #[arg(long, requires = "live")]
@@ -33,11 +40,22 @@ pub struct PacedLiveOptions {
     #[command(flatten)]
     pub view: LiveOptions,
     /// Slows the run under a live view to this multiple of real time [default: as fast as the machine]
-    #[arg(long, value_name = "FACTOR", value_parser = speed)]
+    #[arg(long, value_name = "FACTOR", value_parser = parse_speed, requires = VIEW)]
     pub live_speed: Option<f64>,
 }
 
 impl LiveOptions {
+    /// True if the options ask for a view.
+    pub fn is_wanted(&self) -> bool {
+        self.live.is_some() || self.live_udp.is_some()
+    }
+
+    /// Rejects addresses that cannot be used, before other work.
+    pub fn check(&self) -> Outcome<()> {
+        self.page_address()?;
+        self.udp_address().map(drop)
+    }
+
     /// Address of page and Foxglove.
     pub(crate) fn page_address(&self) -> Outcome<Option<SocketAddr>> {
         self.live.as_deref().map(|address| self.resolve("live", address, PAGE_ADDRESS)).transpose()
@@ -63,13 +81,10 @@ impl LiveOptions {
     }
 }
 
-fn speed(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|value| (0.001..=1000.0).contains(value));
-    value.ok_or_else(|| "write a number from 0.001 to 1000".to_owned())
-}
-
 #[cfg(test)]
 mod tests {
+    use clap::Parser;
+
     use super::*;
 
     fn options(address: &str, live_network: bool) -> LiveOptions {
@@ -90,6 +105,25 @@ mod tests {
             assert!(refused.help().is_some_and(|help| help.contains("--live-network")), "{refused}");
             assert!(options(address, true).page_address().is_ok(), "{address}");
         }
+    }
+
+    #[derive(Debug, clap::Parser)]
+    struct Command {
+        #[command(flatten)]
+        live: PacedLiveOptions,
+    }
+
+    #[test]
+    fn options_without_view_are_refused() {
+        let read = |words: &str| Command::try_parse_from(format!("joint {words}").trim().split(' '));
+        for option in ["--live-wait", "--live-network", "--live-speed=1"] {
+            let refused = read(option).expect_err(option).to_string();
+            assert!(refused.contains("--live"), "{refused}");
+            let given = read(&format!("--live {option}")).expect(option);
+            assert!(given.live.view.is_wanted());
+        }
+        assert!(read("--live-udp --live-network --live-speed=1").is_ok());
+        assert!(!read("").expect("no option").live.view.is_wanted());
     }
 
     #[test]

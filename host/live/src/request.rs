@@ -4,7 +4,7 @@
 //! command the joint: `Host` has to be an IP address or `localhost`, which defeats names that a foreign server resolves
 //! to this machine, and `Origin` has to be the page's own.
 
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::net::{IpAddr, Ipv6Addr, TcpStream};
 use std::time::{Duration, Instant};
 
@@ -45,12 +45,14 @@ pub fn read(stream: &mut TcpStream) -> Result<(Wanted, Vec<u8>), Refusal> {
     let end = Instant::now() + HEAD_TIME;
     let (mut head, mut buffer) = (Vec::new(), [0; 2048]);
     loop {
+        let late = Refusal("408 Request Timeout", "the request did not arrive in time");
         let rest = end.saturating_duration_since(Instant::now());
         if rest.is_zero() || stream.set_read_timeout(Some(rest)).is_err() {
-            return Err(Refusal("408 Request Timeout", "the request did not arrive in time"));
+            return Err(late);
         }
         let count = match stream.read(&mut buffer) {
             Ok(count) if count > 0 => count,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => return Err(late),
             _ => return Err(malformed),
         };
         head.extend(&buffer[..count]);

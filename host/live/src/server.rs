@@ -35,7 +35,7 @@ pub struct Server {
     shared: Arc<Shared>,
 }
 
-/// What every connection needs.
+/// State that all connections share.
 struct Context {
     shared: Arc<Shared>,
     title: String,

@@ -46,8 +46,10 @@ pub struct Outlet {
 pub struct Shared {
     /// Queues of the connected viewers. The run never locks them.
     outlets: Mutex<Vec<Outlet>>,
-    /// Receivers of samples: viewers, and PlotJuggler.
-    pub watchers: AtomicUsize,
+    /// Connected viewers.
+    pub viewers: AtomicUsize,
+    /// True if samples go to PlotJuggler, which need not be there.
+    pub has_udp: AtomicBool,
     /// Connections, also of those that are no viewers yet.
     pub connections: AtomicUsize,
     /// Samples that the run could not hand over.
@@ -56,22 +58,27 @@ pub struct Shared {
     pub sources: AtomicU32,
     /// Time that the run has waited for the clock [ns].
     pub waited: AtomicU64,
-    /// True for a run that shows itself as the only one.
+    /// True while one of several parallel runs has claimed the view.
     pub is_claimed: AtomicBool,
     /// True once the view ends.
     pub is_ending: AtomicBool,
 }
 
 impl Shared {
-    /// True while anybody receives samples.
-    pub fn is_watched(&self) -> bool {
-        self.watchers.load(Ordering::Relaxed) > 0
+    /// True while samples have a receiver: a viewer or PlotJuggler.
+    pub fn has_receiver(&self) -> bool {
+        self.has_viewer() || self.has_udp.load(Ordering::Relaxed)
+    }
+
+    /// True while a viewer is connected.
+    pub fn has_viewer(&self) -> bool {
+        self.viewers.load(Ordering::Relaxed) > 0
     }
 
     /// Adds the queue of a viewer.
     pub fn add(&self, outlet: Outlet) {
         self.lock().push(outlet);
-        self.watchers.fetch_add(1, Ordering::Relaxed);
+        self.viewers.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Hands a batch to every viewer; removes the queues of viewers that left.
@@ -90,7 +97,7 @@ impl Shared {
 
     fn remove(&self, outlets: &mut Vec<Outlet>, gone: impl FnMut(&mut Outlet) -> bool) {
         let removed = outlets.extract_if(.., gone).count();
-        self.watchers.fetch_sub(removed, Ordering::Relaxed);
+        self.viewers.fetch_sub(removed, Ordering::Relaxed);
     }
 
     /// A panic in another thread leaves the list consistent.

@@ -30,6 +30,7 @@ pub struct Live {
     server: Option<Server>,
     shared: Arc<Shared>,
     speed: Option<f64>,
+    waits_for_viewer: bool,
     text: String,
 }
 
@@ -42,14 +43,14 @@ impl Live {
         speed: Option<f64>,
         commands: Option<Commands>,
     ) -> Outcome<Option<Self>> {
-        let (page, udp_address) = (options.page_address()?, options.udp_address()?);
-        if page.is_none() && udp_address.is_none() {
+        if !options.is_wanted() {
             return Ok(None);
         }
+        let (page, udp_address) = (options.page_address()?, options.udp_address()?);
         let shared = Arc::new(Shared::default());
         let server = page.map(|address| Server::listen(address, title, &shared, commands)).transpose()?;
         let udp = udp_address.map(Udp::to).transpose()?;
-        shared.watchers.fetch_add(usize::from(udp.is_some()), Ordering::Relaxed);
+        shared.has_udp.store(udp.is_some(), Ordering::Relaxed);
         let mut text = String::new();
         if let Some(server) = &server {
             text += &format!("live:     {} (Foxglove: {})\n", server.url("http"), server.url("ws"));
@@ -63,22 +64,23 @@ impl Live {
             .name("live".to_owned())
             .spawn(move || hub.run())
             .map_err(|error| Failure::new(format!("cannot start the live view: {error}")))?;
-        Ok(Some(Self { hub: Some(sender), thread, server, shared, speed, text }))
+        let waits_for_viewer = options.live_wait;
+        Ok(Some(Self { hub: Some(sender), thread, server, shared, speed, waits_for_viewer, text }))
     }
 
-    /// Starts the view of a run that is as fast as the machine, prints its addresses, and waits for a viewer if the
-    /// options say so.
-    pub fn start_paced(options: &PacedLiveOptions, title: &str, progress: &Progress) -> Outcome<Option<Self>> {
-        let live = Self::start(&options.view, title, options.live_speed, None)?;
-        if let Some(live) = &live {
-            live.text.lines().for_each(|line| progress.print_message(line));
-            if options.view.live_wait {
-                progress.stage("waiting for a viewer");
-                live.wait();
-                progress.clear();
-            }
+    /// Starts the view of runs that are as fast as the machine without one.
+    pub fn start_paced(options: &PacedLiveOptions, title: &str) -> Outcome<Option<Self>> {
+        Self::start(&options.view, title, options.live_speed, None)
+    }
+
+    /// Prints the addresses of the view, and waits for a viewer if the options say so.
+    pub fn announce(&self, progress: &Progress) {
+        self.text.lines().for_each(|line| progress.print_message(line));
+        if self.waits_for_viewer {
+            progress.stage("waiting for a viewer");
+            self.wait();
+            progress.clear();
         }
-        Ok(live)
     }
 
     /// Addresses of the view, a line each.
@@ -86,9 +88,9 @@ impl Live {
         &self.text
     }
 
-    /// Waits until somebody watches, or the user ends the command.
+    /// Waits, if the options say so, until the first viewer has connected or the user ends the command.
     pub fn wait(&self) {
-        while !self.shared.is_watched() && !interruption::requested() {
+        while self.waits_for_viewer && !self.shared.has_viewer() && !interruption::requested() {
             thread::sleep(POLL);
         }
     }
@@ -98,7 +100,7 @@ impl Live {
         self.open(description, false)
     }
 
-    /// Feed of a run, if no other run shows itself: of runs in parallel, viewers see one at a time.
+    /// Feed of a run, unless the view shows another run: of runs in parallel, viewers see one at a time.
     pub fn claim(&self, description: Description) -> Option<Feed> {
         let is_free = !self.shared.is_claimed.swap(true, Ordering::Acquire);
         if is_free { self.open(description, true) } else { None }
@@ -121,7 +123,7 @@ impl Drop for Live {
     fn drop(&mut self) {
         self.hub = None;
         let end = Instant::now() + FAREWELL;
-        let is_open = || !self.thread.is_finished() || self.shared.watchers.load(Ordering::Relaxed) > 0;
+        let is_open = || !self.thread.is_finished() || self.shared.has_viewer();
         while is_open() && Instant::now() < end {
             thread::sleep(POLL);
         }

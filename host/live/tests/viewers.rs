@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use live::{Commands, Description, Live, LiveOptions, Sample};
+use live::{Commands, Description, Live, LiveOptions, PacedLiveOptions, Sample, Watch};
 use parameters::ContactState;
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
@@ -15,12 +15,25 @@ use tungstenite::{Error, HandshakeError, Message, WebSocket, client};
 /// Longest wait on a machine under load.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
+fn page_options() -> LiveOptions {
+    LiveOptions { live: Some("127.0.0.1:0".to_owned()), ..LiveOptions::default() }
+}
+
 fn view(commands: Option<Commands>) -> (Live, SocketAddr) {
-    let options = LiveOptions { live: Some("127.0.0.1:0".to_owned()), ..LiveOptions::default() };
-    let live = Live::start(&options, "test", None, commands).expect("it listens").expect("a view");
-    let url = live.text().split("http://").nth(1).and_then(|rest| rest.split('/').next()).expect("a URL");
-    let address = url.parse().expect("an address");
+    let live = Live::start(&page_options(), "test", None, commands).expect("it listens").expect("a view");
+    let address = address(&live);
     (live, address)
+}
+
+/// View of runs that follow the clock at a multiple of real time.
+fn view_at_speed(speed: f64) -> Live {
+    let options = PacedLiveOptions { view: page_options(), live_speed: Some(speed) };
+    Live::start_paced(&options, "test").expect("it listens").expect("a view")
+}
+
+fn address(live: &Live) -> SocketAddr {
+    let url = live.text().split("http://").nth(1).and_then(|rest| rest.split('/').next()).expect("a URL");
+    url.parse().expect("an address")
 }
 
 fn description() -> Description {
@@ -158,6 +171,76 @@ fn plotjuggler_gets_json() {
     assert_eq!(joint["sun_planet_contact"], json!([-1, -1, -1]));
 }
 
+/// A view whose samples go to PlotJuggler as well.
+fn view_with_udp(live_wait: bool) -> Live {
+    let options = LiveOptions { live_udp: Some("127.0.0.1:9".to_owned()), live_wait, ..page_options() };
+    Live::start(&options, "test", None, None).expect("it listens").expect("a view")
+}
+
+#[test]
+fn plotjuggler_counts_as_no_viewer() {
+    let live = view_with_udp(true);
+    let page = address(&live);
+    let waiting = thread::spawn(move || {
+        live.wait();
+        live
+    });
+    thread::sleep(Duration::from_millis(100));
+    assert!(!waiting.is_finished(), "--live-wait waits for a viewer");
+    let _viewer = connect(page, "/live", &[]).expect("the page's socket");
+    drop(waiting.join().expect("no panic"));
+}
+
+/// The shortest of five ends, on a machine under load.
+#[test]
+fn view_without_viewer_ends_at_once() {
+    let end = |_| {
+        let live = view_with_udp(false);
+        let begin = Instant::now();
+        drop(live);
+        begin.elapsed()
+    };
+    let shortest = (0..5).map(end).min().expect("five ends");
+    assert!(shortest < Duration::from_millis(400), "{shortest:?}");
+}
+
+/// At a hundredth of real time and 20 kHz a parcel of 64 samples fills in 0.32 s; a batch has the samples of 25 ms.
+#[test]
+fn slow_motion_arrives_evenly() {
+    let live = view_at_speed(0.01);
+    let mut viewer = connect(address(&live), "/live", &[]).expect("the page's socket");
+    assert_eq!(text(&mut viewer)["type"], "hello");
+    let mut feed = live.feed(description()).expect("a feed");
+    for tick in 0..500 {
+        // A change of contact in every sample, so that viewers get all of them.
+        let contact = if tick % 2 == 0 { ContactState::DriveSide } else { ContactState::Separated };
+        feed.publish(f64::from(tick) / 20e3, || sample(tick, contact));
+    }
+    drop(feed);
+    drop(live);
+    let mut rows = Vec::new();
+    while let Ok(message) = viewer.read() {
+        if let Message::Binary(bytes) = message {
+            rows.push(u32::from_le_bytes(bytes[8..12].try_into().expect("a number")));
+        }
+    }
+    rows.sort_unstable();
+    assert!(rows[rows.len() / 2] < 20, "{rows:?} samples in the batches");
+}
+
+#[test]
+fn limit_excludes_own_waits_only() {
+    let live = view_at_speed(1.0);
+    let limit = || Watch::until(Instant::now() + Duration::from_millis(100)).beside(Some(&live));
+    let wait = || live.feed(description()).expect("a feed").publish(0.3, || Sample::at(0.3));
+    let first = limit();
+    wait();
+    assert!(!first.is_over(), "a wait for the clock is no time of the run");
+    let second = limit();
+    thread::sleep(Duration::from_millis(200));
+    assert!(second.is_over(), "a wait before the limit was set extends it");
+}
+
 #[test]
 fn stuck_viewer_slows_nobody() {
     let (live, address) = view(None);
@@ -207,6 +290,7 @@ fn hostile_bytes_end_their_own_connection() {
         (many.as_bytes(), "431"),
         (b"GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n", "403"),
         (b"POST /live HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4\r\n\r\n{}{}", "405"),
+        (b"GET / HTTP/1.1\r\n", "408"),
     ] {
         let answer = answer(address, bytes);
         // A server that closes while bytes arrive may cut its own answer off.

@@ -96,7 +96,7 @@ impl Test {
 /// Runs a test.
 pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> Outcome<FinishedTest> {
     let start = Instant::now();
-    let deadline = start + Duration::from_secs_f64(test.file.timeout);
+    let watch = Watch::until(start + Duration::from_secs_f64(test.file.timeout)).beside(options.live);
     let seeds = test.seeds(options.seed, options.full);
     let controllers = test.controllers();
     let keep_logs = seeds.len() <= MAX_LOGGED_SEEDS;
@@ -105,7 +105,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> 
     let done: Vec<Outcome<FinishedRun>> = jobs
         .par_iter()
         .map(|job| {
-            let done = run_job(test, options, job, deadline);
+            let done = run_job(test, options, job, watch);
             (options.done)(finished_runs.fetch_add(1, Ordering::Relaxed) + 1);
             done
         })
@@ -136,7 +136,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> 
         if job.seed == shown_seed {
             // Without `keep_logs`, log and pictures of the run were not kept: the run is repeated to record them.
             if !keep_logs {
-                done = run_job(test, options, &Job { keep_logs: true, ..*job }, deadline)?;
+                done = run_job(test, options, &Job { keep_logs: true, ..*job }, watch)?;
             }
             shown.push((job.controller, done.trace.unwrap_or_default()));
         }
@@ -205,7 +205,7 @@ fn replay_command(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> 
     format!("cargo joint hil {} {place} --plant {}{seeds}", quoted(&test.name), options.plant.word())
 }
 
-fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<FinishedRun> {
+fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, watch: Watch<'_>) -> Outcome<FinishedRun> {
     let mut case = test.case(job.seed)?;
     // A log carries the joint file of its observer. A nominal joint outside the limits of joint files is run anyway if
     // no board or memory needs the file.
@@ -223,7 +223,6 @@ fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) 
     };
     let is_tested = job.controller == test.file.controller;
     let name = format!("{}, seed {}", test.name, job.seed);
-    let watch = Watch::until(deadline).beside(options.live);
     let history = match options.boards.filter(|_| is_tested) {
         None => execute(&test.file, &case, job.seed, spec, watch.named(is_tested.then_some(&name))),
         Some(boards) => boards.run(test, &case, job.seed, spec, watch.named(Some(&name))).map(|(history, board)| {

@@ -16,13 +16,13 @@ use parameters::{JointParameters, Surroundings};
 use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, SharedProfile};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
+use reference::joint::mean_half_backlash;
 
 use super::any_motion::{any_motion, real_motion};
 use super::controller_log::ObserverOrigin;
 use super::disturbances::disturbances;
 use super::encoder_zeros::EncoderZeros;
 use super::file::{Change, MotionProfile, NewValue, TestFile, Trajectory};
-use super::plant::half_backlash;
 use super::random::{NumberOrRange, RandomStream};
 use super::recorded::RecordedMotion;
 use super::surroundings::train;
@@ -97,7 +97,7 @@ impl Case {
         let usual = NumberOrRange::Exactly(if seed.is_multiple_of(2) { 0.5 } else { 1.5 });
         let width_guess = draw("width_guess_ratio", file.width_guess.unwrap_or(usual));
         let mut nominal = known.parameters.clone();
-        let half_backlash = width_guess * half_backlash(&truth.parameters);
+        let half_backlash = width_guess * mean_half_backlash(&truth.parameters);
         for mesh in [&mut nominal.sun_planet, &mut nominal.ring_planet] {
             mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
         }
@@ -165,7 +165,7 @@ impl Case {
 
     /// True half-backlash, mean over the planets [m].
     pub fn half_backlash(&self) -> f64 {
-        half_backlash(&self.truth.parameters)
+        mean_half_backlash(&self.truth.parameters)
     }
 
     /// True joint without backlash.

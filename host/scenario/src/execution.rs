@@ -10,14 +10,14 @@ use model_core::observer::design::observer_settings;
 use super::case::{Case, Designed};
 use super::controller::ControllerName;
 use super::file::TestFile;
-use super::plant::{PlantName, half_backlash};
+use super::plant::PlantName;
 use super::port::{ControllerPort, HostPort, Translator};
 use super::random::RandomStream;
 use super::rig::{ActiveController, Rig, RunError, Setup, TrueStateCompensation};
 use super::run_history::RunHistory;
 use super::set_point_source::SetPointSource;
 use parameters::JointParameters;
-use reference::joint::{RelativeState, Start};
+use reference::joint::{RelativeState, Start, mean_half_backlash};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use simulation::sim::live_view::description;
@@ -106,7 +106,7 @@ fn run(
     let run = RunContext { file, case, spec, designed, watch };
     if file.from_memory && spec.controller.is_compensation() {
         // The first run has other noise, so that the memory holds the joint and not the noise.
-        run.execute(&mut controller, !seed)?;
+        RunContext { watch: watch.named(None), ..run }.execute(&mut controller, !seed)?;
         let memory_at_start = controller.restart_from_memory()?;
         return Ok(RunHistory { memory_at_start, ..run.execute(&mut controller, seed)? });
     }
@@ -130,12 +130,13 @@ pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
 fn start_state(joint: &JointParameters, seed: u64) -> RelativeState {
     let mut stream = RandomStream::new(seed, "start in the gap");
     let (on_flank, place) = (stream.uniform() < ON_FLANK_SHARE, 2.0 * stream.uniform() - 1.0);
-    let mesh = half_backlash(joint) * if on_flank { place.signum() } else { place };
+    let mesh = mean_half_backlash(joint) * if on_flank { place.signum() } else { place };
     let centred = RelativeState::centred(joint.geometry.planets);
     RelativeState { sun_planet: centred.sun_planet.iter().map(|_| mesh).collect(), gap: 2.0 * mesh, ..centred }
 }
 
 /// A run from its first period to its last.
+#[derive(Clone, Copy)]
 struct RunContext<'r> {
     file: &'r TestFile,
     case: &'r Case,

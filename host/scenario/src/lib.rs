@@ -121,6 +121,8 @@ struct PreparedGroup<'w> {
 pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &FILES)?;
+    // A port in use is reported before boards are prepared.
+    let live = Live::start_paced(&request.live, "joint hil")?;
     let mut groups = Vec::new();
     for TestGroup { path, choice, plant, boards } in &request.groups {
         let mut suite = suite::load(path, *choice, *plant)?;
@@ -132,7 +134,7 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     folder::check_files(&[("json", request.json), ("junit", request.junit)], &read)?;
     folder.make()?;
     folder::make(&folder.file(log_file::FOLDER))?;
-    let live = Live::start_paced(&request.live, "joint hil", progress)?;
+    live.iter().for_each(|live| live.announce(progress));
     let (tested, not_run) = run_groups(groups, request, &folder, live.as_ref(), progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),

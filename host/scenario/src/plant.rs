@@ -49,11 +49,6 @@ impl Teeth for Reference {
     }
 }
 
-/// Half-backlash of a joint, mean over the planets [m].
-pub fn half_backlash(joint: &JointParameters) -> f64 {
-    joint.sun_planet.half_backlash.iter().sum::<f64>() / joint.geometry.planets as f64
-}
-
 /// A drive train with a joint of either kind.
 pub type Plant = DriveTrain<Box<dyn Teeth>>;
 
@@ -301,6 +296,8 @@ impl<const N: usize> JointModel for CoreJoint<N> {
 mod tests {
     use parameters::{Friction, Hysteresis, Payload, PayloadStep, WidthVariation};
 
+    use reference::joint::mean_half_backlash;
+
     use super::*;
 
     fn q1() -> JointParameters {
@@ -373,7 +370,7 @@ mod tests {
                 plant.joint().gap
             };
             let width = end(0.2) - end(-0.2);
-            let expected = 1.3 * 4.0 * half_backlash(&q1());
+            let expected = 1.3 * 4.0 * mean_half_backlash(&q1());
             assert!((width / expected - 1.0).abs() < 0.015, "{name:?}: {width} m for {expected} m");
         }
     }

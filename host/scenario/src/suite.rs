@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use link::messages::Role;
-use model_core::virtual_joint::fault::FaultKind;
 use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded_motion};
-use super::file::{self, HostOnlyFault, TestFile, Trajectory};
+use super::faults::check_broken_tooth;
+use super::file::{self, TestFile, Trajectory};
 use super::plant::{PlantName, reject_effects};
 use super::record::NotRun;
 use super::recorded::RecordedMotion;
@@ -159,21 +159,9 @@ fn checked_test(name: String, text: String, file: TestFile, folder: &Path, plant
     let joint = load_joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
-    let broken_tooth =
-        file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::Other(HostOnlyFault::BrokenTooth(_))));
-    if broken_tooth && joint.file.parameters.equivalent_gear().is_some() {
-        return Err(Failure::new(format!(
-            "{name}: joint `{}` is an equivalent gear, which has no tooth to break",
-            joint.file.parameters.name
-        ))
-        .with_help("leave the broken tooth out, or name a joint with teeth"));
-    }
-    if broken_tooth && plant == PlantName::Core {
-        return Err(Failure::new(format!(
-            "{name}: the core's planets share their stiffness, so no tooth of it can break"
-        ))
-        .with_help("run it with --plant reference, with --host or --role observer"));
-    }
+    let help = "run it with --plant reference, with --host or --role observer";
+    check_broken_tooth(&file.faults, &joint.file.parameters, plant, help)
+        .map_err(|failure| failure.while_doing(&name))?;
     let motion = recorded_motion(&file, folder).map_err(|failure| failure.while_doing(&name))?;
     if let Some(motion) = motion.as_ref().filter(|_| !file.states_duration) {
         check_length(motion.duration(), "duration_s").map_err(|failure| failure.while_doing(&name))?;

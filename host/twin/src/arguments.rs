@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use board::device::board::Board;
 use clap::{Args, value_parser};
-use live::LiveOptions;
+use live::{LiveOptions, parse_speed};
 use scenario::plant::PlantName;
 
 use crate::protocol::DriveName;
@@ -52,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "PATH")]
     pub link: Option<PathBuf>,
     /// Speed of the simulated time over that of the clock
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed, conflicts_with = "lockstep")]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_speed, conflicts_with = "lockstep")]
     pub speed: f64,
     /// Simulated time advances by so many milliseconds for each frame of the client, and only then: reproducible
     #[arg(long, value_name = "MS", value_parser = value_parser!(f64))]
@@ -96,10 +96,6 @@ pub struct Arguments {
 fn within(text: &str, low: f64, high: f64, unit: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|value| (low..=high).contains(value));
     value.ok_or_else(|| format!("write a number from {low} to {high}{unit}"))
-}
-
-fn speed(text: &str) -> Result<f64, String> {
-    within(text, 0.001, 1000.0, "")
 }
 
 fn duration(text: &str) -> Result<f64, String> {

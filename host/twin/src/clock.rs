@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use live::Pace;
+
 /// Lateness after which a run gives up catching up. Time lost beyond it stays lost, so that a client never meets a
 /// burst of periods.
 const MAX_LATENESS: Duration = Duration::from_millis(50);
@@ -13,8 +15,7 @@ const CLASSES: usize = 5000;
 /// Clock of a run.
 #[derive(Debug)]
 pub struct Clock {
-    start: Instant,
-    speed: f64,
+    pace: Pace,
     histogram: Vec<u64>,
     worst: Duration,
     lost: Duration,
@@ -37,8 +38,7 @@ impl Clock {
     /// Clock that starts now, with simulated time over that of the clock.
     pub fn new(speed: f64) -> Self {
         Self {
-            start: Instant::now(),
-            speed,
+            pace: Pace::starting(Instant::now(), speed),
             histogram: vec![0; CLASSES + 1],
             worst: Duration::ZERO,
             lost: Duration::ZERO,
@@ -47,23 +47,19 @@ impl Clock {
 
     /// Time until a simulated time [s] is due; zero once it is.
     pub fn wait(&self, time: f64) -> Duration {
-        self.due(time).saturating_duration_since(Instant::now())
+        self.pace.wait(time)
     }
 
     /// Notes that the period of a simulated time [s] begins.
     pub fn begin(&mut self, time: f64) {
-        let late = Instant::now().saturating_duration_since(self.due(time));
+        let late = self.pace.lateness(time);
         let class = (late.as_nanos() / CLASS.as_nanos()) as usize;
         self.histogram[class.min(CLASSES)] += 1;
         self.worst = self.worst.max(late);
         if let Some(lost) = late.checked_sub(MAX_LATENESS) {
-            self.start += lost;
+            self.pace.postpone(lost);
             self.lost += lost;
         }
-    }
-
-    fn due(&self, time: f64) -> Instant {
-        self.start + Duration::from_secs_f64((time / self.speed).max(0.0))
     }
 
     /// Lateness so far.
@@ -104,7 +100,7 @@ mod tests {
     #[test]
     fn time_beyond_the_limit_is_lost() {
         let mut clock = Clock::new(1.0);
-        clock.start -= Duration::from_secs(3);
+        clock.pace = Pace::starting(Instant::now() - Duration::from_secs(3), 1.0);
         clock.begin(1.0);
         let lost = clock.lateness().lost_s;
         assert!((1.9..2.0).contains(&lost), "{lost}");

@@ -238,6 +238,12 @@ fn read(line: &str, bus: &Bus<'_>) -> Result<(Order, Vec<Fault>), Reply> {
         })?,
         None => Vec::new(),
     };
+    let concerned = joints.iter().filter(|joint| order.joint.is_none_or(|id| joint.id == id));
+    for joint in concerned {
+        joint
+            .check_faults(&faults)
+            .map_err(|failure| refused(failure.message(), failure.help().unwrap_or_default()))?;
+    }
     Ok((order, faults))
 }
 
@@ -338,5 +344,34 @@ fn status(bus: &Bus<'_>, index: usize) -> Status {
             compensation_stage: format!("{:?}", state.stage),
             compensation_stepped_back: state.is_stepped_back,
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::joint::{Choices, Prepared};
+    use scenario::plant::PlantName;
+
+    /// Answer of a twin of one joint to a line.
+    fn answer(joint: &str, plant: PlantName, line: &str) -> Value {
+        let choices = Choices::of_plant(plant);
+        let prepared = Prepared::load(1, Path::new(joint), &choices).expect("a preset");
+        let mut bus = Bus::new(vec![prepared.start(&choices).expect("it is designed")], None, 1);
+        serde_json::from_str(&execute(line, &mut bus)).expect("JSON")
+    }
+
+    #[test]
+    fn broken_tooth_needs_plant_with_teeth() {
+        let line = r#"{"fault": {"kind": "broken_tooth", "stiffness_ratio": 0.3}}"#;
+        for (joint, plant, why) in
+            [("q1", PlantName::Core, "share their stiffness"), ("c1", PlantName::Reference, "equivalent gear")]
+        {
+            let refused = answer(joint, plant, line);
+            assert!(refused["error"].as_str().is_some_and(|error| error.contains(why)), "{joint}: {refused}");
+        }
+        assert!(answer("q1", PlantName::Reference, line)["time_s"].is_number());
+        let other = r#"{"fault": {"kind": "encoder_frozen", "encoder": "output"}}"#;
+        assert!(answer("q1", PlantName::Core, other)["time_s"].is_number());
     }
 }

@@ -6,13 +6,10 @@ use std::f64::consts::TAU;
 use board::device::board::Board;
 use drives::Drive;
 use drives::drive::VirtualPower;
-use joint_file::JointFile;
 use live::Sample;
 use model_core::virtual_joint::{VirtualJoint, VirtualJointDesign};
 use report::failure::{Failure, Outcome};
-use scenario::plant::half_backlash;
-
-use crate::truth::Truth;
+use scenario::case::Case;
 
 /// Tables of a joint, as its image has them.
 pub struct ImageTables(Box<dyn Designed>);
@@ -33,10 +30,8 @@ pub trait Moving {
     fn time(&self) -> f64;
     /// Control period [s].
     fn period(&self) -> f64;
-    /// True state.
-    fn truth(&self) -> Truth;
-    /// State for the live view; the step has no force of a single mesh.
-    fn sample(&self) -> Sample;
+    /// True state. The step has no force of a single mesh.
+    fn truth(&self) -> Sample;
 }
 
 struct TablesOf<const N: usize> {
@@ -53,13 +48,13 @@ struct MovingJoint<'t, const N: usize> {
 }
 
 impl ImageTables {
-    /// Designs the tables of a joint for the chip of a board, at the control rate of its surroundings.
-    pub fn new(truth: &JointFile, board: &Board) -> Outcome<Self> {
-        let designed = match truth.parameters.geometry.planets {
-            1 => design::<1>(truth, board),
-            3 => design::<3>(truth, board),
-            4 => design::<4>(truth, board),
-            _ => design::<5>(truth, board),
+    /// Designs the tables of a true joint for the chip of a board, at the control rate of its surroundings.
+    pub fn new(case: &Case, board: &Board) -> Outcome<Self> {
+        let designed = match case.truth.parameters.geometry.planets {
+            1 => design::<1>(case, board),
+            3 => design::<3>(case, board),
+            4 => design::<4>(case, board),
+            _ => design::<5>(case, board),
         };
         designed.map(Self)
     }
@@ -70,15 +65,15 @@ impl ImageTables {
     }
 }
 
-fn design<const N: usize>(truth: &JointFile, board: &Board) -> Outcome<Box<dyn Designed>> {
-    let joint = &truth.parameters;
+fn design<const N: usize>(case: &Case, board: &Board) -> Outcome<Box<dyn Designed>> {
+    let joint = &case.truth.parameters;
     let refused = |error: &dyn std::fmt::Display| {
         Failure::new(format!("joint `{}` cannot be simulated on {}: {error}", joint.name, board.name()))
             .with_help("`joint twin` without --image has other models of the joint")
     };
-    let design =
-        virtual_drive::joint_tables(joint, &truth.surroundings, &board.processor()).map_err(|error| refused(&error))?;
-    let (half_backlash, sun_radius) = (half_backlash(joint), joint.geometry.sun_base_radius);
+    let design = virtual_drive::joint_tables(joint, &case.truth.surroundings, &board.processor())
+        .map_err(|error| refused(&error))?;
+    let (half_backlash, sun_radius) = (case.half_backlash(), joint.geometry.sun_base_radius);
     Ok(Box::new(TablesOf::<N> { design, half_backlash, sun_radius }))
 }
 
@@ -103,12 +98,11 @@ impl<const N: usize> Moving for MovingJoint<'_, N> {
         1.0 / f64::from(self.tables.design.gears.tick_rate)
     }
 
-    fn truth(&self) -> Truth {
+    fn truth(&self) -> Sample {
         let (outputs, acting) = (self.joint.outputs(), self.joint.acting());
         let carrier = f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / f64::powi(2.0, 32);
-        let link = TAU * carrier + f64::from(outputs.link_offset);
-        Truth {
-            link,
+        let mut sample = Sample {
+            link: TAU * carrier + f64::from(outputs.link_offset),
             link_speed: f64::from(self.joint.link_speed()),
             motor: f64::from(self.tables.design.surroundings.gear) * TAU * carrier + f64::from(outputs.motor_offset),
             gap: f64::from(outputs.gap),
@@ -116,23 +110,9 @@ impl<const N: usize> Moving for MovingJoint<'_, N> {
             mesh_force: f64::from(self.joint.mesh_torque()) / self.tables.sun_radius,
             load_torque: f64::from(acting.load),
             motor_torque: f64::from(acting.air_gap),
-        }
-    }
-
-    fn sample(&self) -> Sample {
-        let truth = self.truth();
-        let mut sample = Sample {
-            link: truth.link,
-            link_speed: truth.link_speed,
-            motor: truth.motor,
-            gap: truth.gap,
-            half_backlash: truth.half_backlash,
-            mesh_force: truth.mesh_force,
-            load_torque: truth.load_torque,
-            motor_torque: truth.motor_torque,
             ..Sample::at(self.time())
         };
-        for contact in self.joint.outputs().contacts.as_flattened() {
+        for contact in outputs.contacts.as_flattened() {
             sample.meshes.add(*contact, f64::NAN);
         }
         sample

@@ -1,6 +1,7 @@
 //! One joint behind its drive: plant with faults, drive, server of the protocol, supply, and optionally observer and
 //! compensation in the drive.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use board::device::board::Board;
@@ -15,6 +16,8 @@ use report::failure::{Failure, Outcome};
 use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
 use scenario::execution::{RunSpec, setup};
+use scenario::faults::check_broken_tooth;
+use scenario::file::Fault;
 use scenario::live_view::{description, true_sample};
 use scenario::plant::PlantName;
 use scenario::port::Translator;
@@ -26,7 +29,6 @@ use crate::image::{ImageJoint, ImageTables};
 use crate::mapping;
 use crate::mode::{ActiveMode, Mode};
 use crate::protocol::{DriveName, Server};
-use crate::truth::Truth;
 
 /// Joint as it was asked for: its identifier on the bus, and its case.
 pub struct Prepared {
@@ -111,10 +113,28 @@ enum Plant<'d> {
 /// Plant of a test, and its way to observer and compensation.
 struct TestPlant<'d> {
     rig: Rig,
+    case: &'d Case,
+    model: PlantName,
     translator: Translator,
     compensated: Option<Compensated<'d>>,
     /// Angle zero of the joint on the scale of the raw output encoder [turns].
     output_zero: f64,
+}
+
+#[cfg(test)]
+impl Choices {
+    /// Choices of tests for a plant.
+    pub fn of_plant(plant: PlantName) -> Self {
+        Self {
+            drive: DriveName::Moteus,
+            plant,
+            seed: 1,
+            compensation: false,
+            is_calibrated: true,
+            supply: 48.0,
+            image: None,
+        }
+    }
 }
 
 impl Prepared {
@@ -134,10 +154,11 @@ impl Prepared {
         };
         let mut case = Case::new(&test.file, &test.joint.text, choices.seed, test.motion.as_ref())?;
         if let Some(board) = &choices.image {
+            check_for_image(&test, &case)?;
             case.truth.surroundings.control_rate = default_drive_rate(&case.truth.parameters, board);
         }
         let designed = choices.compensation.then(|| case.design(&test.file)).transpose()?;
-        let image = choices.image.as_ref().map(|board| ImageTables::new(&case.truth, board)).transpose()?;
+        let image = choices.image.as_ref().map(|board| ImageTables::new(&case, board)).transpose()?;
         Ok(Self { id, name: path.display().to_string(), test, case, designed, image })
     }
 
@@ -169,6 +190,8 @@ impl Prepared {
         let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn);
         Ok(TestPlant {
             rig,
+            case,
+            model: choices.plant,
             translator: scenario::execution::translator(case),
             compensated: designed.as_ref().map(|designed| Compensated {
                 observer: Observer::new(&designed.observer),
@@ -233,12 +256,9 @@ impl Joint<'_> {
             self.drive.set_point(),
             Some(SetPoint::Position(_) | SetPoint::Velocity { .. } | SetPoint::Impedance { .. })
         );
-        let target = f64::from(feedback.target.minus(self.drive.origin()).to_rad());
-        let wanted = if follows && feedback.output_position.is_some() { target } else { f64::NAN };
-        match &self.plant {
-            Plant::Rig(plant) => plant.sample(wanted),
-            Plant::Image(joint) => Sample { wanted, ..joint.sample() },
-        }
+        let target = feedback.target.minus(self.drive.origin());
+        let wanted = if follows && feedback.output_position.is_some() { radians(target) } else { f64::NAN };
+        Sample { wanted, ..self.truth() }
     }
 
     /// State of observer and compensation, if they act in the drive.
@@ -275,6 +295,15 @@ impl Joint<'_> {
         matches!(self.plant, Plant::Image(_))
     }
 
+    /// Rejects faults that the plant cannot have.
+    pub fn check_faults(&self, faults: &[Fault]) -> Outcome<()> {
+        let help = "start the twin with --plant reference";
+        match &self.plant {
+            Plant::Rig(plant) => check_broken_tooth(faults, &plant.case.truth.parameters, plant.model, help),
+            Plant::Image(_) => Ok(()),
+        }
+    }
+
     /// Plant with its faults; `None` for the joint of an image, which has none.
     pub fn rig(&mut self) -> Option<&mut Rig> {
         match &mut self.plant {
@@ -283,13 +312,22 @@ impl Joint<'_> {
         }
     }
 
-    /// True state.
-    pub fn truth(&self) -> Truth {
+    /// True state, with the angle of the link on the scale of the raw output encoder.
+    pub fn truth(&self) -> Sample {
         match &self.plant {
             Plant::Rig(plant) => plant.truth(),
             Plant::Image(joint) => joint.truth(),
         }
     }
+}
+
+/// Rejects a test file whose faults or loads the joint of an image would leave out.
+fn check_for_image(test: &Test, case: &Case) -> Outcome<()> {
+    let left_out = [("faults", !test.file.faults.is_empty()), ("loads on the link", !case.disturbances.is_empty())];
+    left_out.iter().find(|(_, has)| *has).map_or(Ok(()), |(things, _)| {
+        Err(Failure::new(format!("{} has {things}, and the joint of an image has none", test.name))
+            .with_help(format!("leave --image out, or name the joint file {} alone", test.file.joint)))
+    })
 }
 
 impl TestPlant<'_> {
@@ -335,24 +373,48 @@ impl TestPlant<'_> {
         drive.step(sensors, Some(&mut follow))
     }
 
-    /// State for the live view with the desired angle of the link [rad].
-    fn sample(&self, wanted: f64) -> Sample {
+    fn truth(&self) -> Sample {
         let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
-        let sample = true_sample(joint, &torques, self.rig.half_backlash(), wanted);
-        Sample { link: self.truth().link, ..sample }
+        let link = joint.link_angle + TAU * self.output_zero;
+        Sample { link, ..true_sample(joint, &torques, self.rig.half_backlash(), f64::NAN) }
+    }
+}
+
+/// Converts an angle to f64 [rad]. The angle's own conversion is f32, which has a resolution of 0.06 mrad at a hundred turns.
+fn radians(angle: Turns) -> f64 {
+    TAU * (angle.to_bits() as f64 / f64::powi(2.0, 32))
+}
+
+#[cfg(test)]
+mod tests {
+    use report::workspace::workspace;
+
+    use super::*;
+
+    /// In f32, 1000.1 turns in radians are a multiple of 0.5 mrad.
+    #[test]
+    fn target_keeps_resolution_after_many_turns() {
+        let choices = Choices::of_plant(PlantName::Core);
+        let prepared = Prepared::load(1, Path::new("q1"), &choices).expect("a preset");
+        let mut joint = prepared.start(&choices).expect("it is designed");
+        for _ in 0..3 {
+            joint.set_mode(Mode::Position { turns: 1000.1 });
+            joint.step().expect("it runs");
+        }
+        let error = joint.live_sample().wanted - TAU * 1000.1;
+        assert!(error.abs() < 1e-6, "{error}");
     }
 
-    fn truth(&self) -> Truth {
-        let (joint, torques) = (self.rig.plant().joint(), self.rig.plant().torques());
-        Truth {
-            link: joint.link_angle + std::f64::consts::TAU * self.output_zero,
-            link_speed: joint.link_speed,
-            motor: joint.motor_angle,
-            gap: joint.gap,
-            half_backlash: self.rig.half_backlash(),
-            mesh_force: joint.sun_force(),
-            load_torque: torques.load_friction + torques.gravity + torques.disturbance,
-            motor_torque: torques.air_gap,
+    #[test]
+    fn image_refuses_faults_and_loads_of_file() {
+        let board = Board::parse("odrive-3.6").expect("a board");
+        let choices = Choices { image: Some(board), ..Choices::of_plant(PlantName::Core) };
+        let load = |file: &Path| Prepared::load(1, file, &choices).map(|_| ());
+        for (file, what) in [("hil/encoder-frozen.toml", "faults"), ("hil/disturbed-hold.toml", "loads on the link")] {
+            let refused = load(&workspace().join(file)).expect_err(file);
+            assert!(refused.message().contains(what), "{refused}");
+            assert!(refused.help().is_some_and(|help| help.contains("--image")), "{refused}");
         }
+        load(Path::new("q1")).expect("a joint has neither");
     }
 }

@@ -24,7 +24,6 @@ mod protocol;
 mod session;
 mod summary;
 pub mod terminal;
-mod truth;
 
 pub use arguments::Arguments;
 pub use session::run;

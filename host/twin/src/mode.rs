@@ -50,7 +50,8 @@ pub struct ActiveMode {
     origin: Turns,
 }
 
-/// Keys of a mode. Without an enum with a tag, which does not read numbers of arbitrary precision.
+/// Keys of a mode in JSON. They are read one by one: an enum with `serde(tag)` rejects all numbers while another crate
+/// of the build turns on `arbitrary_precision` of `serde_json`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
@@ -84,9 +85,15 @@ impl TryFrom<Keys> for Mode {
             },
             _ => return Err(format!("there is no mode `{kind}`")),
         };
-        match [keys.turns, keys.turns_per_s, keys.torque, keys.period_s].iter().any(Option::is_some) {
-            true => Err(format!("the mode `{kind}` has a number too many")),
-            false => Ok(mode),
+        let numbers = [
+            ("turns", keys.turns),
+            ("turns_per_s", keys.turns_per_s),
+            ("torque_N_m", keys.torque),
+            ("period_s", keys.period_s),
+        ];
+        match numbers.iter().find(|(_, left)| left.is_some()) {
+            Some((key, _)) => Err(format!("the mode `{kind}` takes no number `{key}`")),
+            None => Ok(mode),
         }
     }
 }

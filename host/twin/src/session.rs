@@ -67,14 +67,13 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let (endpoint, client) = Endpoint::open(wire, arguments.port, arguments.link.as_deref(), &sender, &gate)?;
     let _control = arguments.control.as_ref().map(|path| Socket::listen(path, &sender)).transpose()?;
     let live = Live::start(&arguments.live, "joint twin", None, Some(commands(&sender)))?;
+    let log = arguments.log.as_ref().map(|path| TwinLog::begin(path, &bus.joints, remarks(arguments))).transpose()?;
+    announce(arguments, wire, &endpoint.name, &bus, live.as_ref())?;
+    live.iter().for_each(Live::wait);
+    // The time of a feed counts from its start, so that it begins with the run.
     let feeds =
         live.iter().flat_map(|live| bus.joints.iter().filter_map(|joint| live.feed(joint.description().clone())));
     let feeds: Vec<Feed> = feeds.collect();
-    let log = arguments.log.as_ref().map(|path| TwinLog::begin(path, &bus.joints, remarks(arguments))).transpose()?;
-    announce(arguments, wire, &endpoint.name, &bus, live.as_ref())?;
-    if let Some(live) = live.as_ref().filter(|_| arguments.live.live_wait) {
-        live.wait();
-    }
     let session = Session {
         bus,
         wire,
@@ -89,8 +88,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         started: Instant::now(),
     };
     let summary = match arguments.lockstep {
-        Some(step) => session.run_in_lockstep(&events, 1e-3 * step),
-        None => session.run_by_clock(&events, arguments.speed),
+        Some(step) => session.run_in_lockstep(events, 1e-3 * step),
+        None => session.run_by_clock(events, arguments.speed),
     }?;
     arguments.json.as_ref().map_or(Ok(()), |path| output::write_json(path, &output::json("summary", &summary)?))?;
     output::print(&summary.text())
@@ -107,12 +106,21 @@ fn wire_of(arguments: &Arguments) -> Outcome<WireName> {
         return Err(Failure::new(format!("`{}` is on {bus}", arguments.drive.word())).with_help(help));
     }
     if wire == WireName::Serial && arguments.bitrate.is_some() {
-        return Err(Failure::new("--bitrate is that of a CAN bus, and a serial bus has none")
+        return Err(Failure::new(format!("--bitrate sets the rate of a CAN bus, and {}", on_serial_bus(arguments)))
             .with_help("leave --bitrate out: bytes of a serial bus take no time"));
     }
     if wire == WireName::Serial && arguments.same_id {
-        return Err(Failure::new("--same-id lets frames of a CAN bus collide, and a serial bus has none")
-            .with_help("leave --same-id out"));
+        return Err(Failure::new(format!(
+            "--same-id makes frames on a CAN bus collide, and {}",
+            on_serial_bus(arguments)
+        ))
+        .with_help("leave --same-id out"));
+    }
+    if arguments.same_id && arguments.live.is_wanted() {
+        return Err(Failure::new(
+            "--same-id gives several joints one identifier, by which a live view tells them apart",
+        )
+        .with_help("leave the live view out, or give each joint an identifier of its own without --same-id"));
     }
     if wire == WireName::Socketcand && arguments.drive == DriveName::Moteus {
         return Err(
@@ -125,6 +133,10 @@ fn wire_of(arguments: &Arguments) -> Outcome<WireName> {
         );
     }
     Ok(wire)
+}
+
+fn on_serial_bus(arguments: &Arguments) -> String {
+    format!("`{}` is on a serial bus", arguments.drive.word())
 }
 
 /// Identifiers and files of the joints.
@@ -227,7 +239,8 @@ struct Session<'d> {
 }
 
 impl Session<'_> {
-    fn run_by_clock(mut self, events: &Receiver<Event>, speed: f64) -> Outcome<Summary> {
+    /// Runs by the clock. The end drops the events, so that no thread waits for the answer to a command.
+    fn run_by_clock(mut self, events: Receiver<Event>, speed: f64) -> Outcome<Summary> {
         let mut clock = Clock::new(speed);
         while self.goes_on() {
             let time = self.time();
@@ -248,7 +261,8 @@ impl Session<'_> {
         self.finish(lateness)
     }
 
-    fn run_in_lockstep(mut self, events: &Receiver<Event>, step: f64) -> Outcome<Summary> {
+    /// Runs in lockstep with the client. The end drops the events, so that no thread waits for the answer to a command.
+    fn run_in_lockstep(mut self, events: Receiver<Event>, step: f64) -> Outcome<Summary> {
         // The first period reads the encoders, so that the first answer has a position.
         self.period()?;
         let mut target = self.time();
@@ -381,5 +395,39 @@ fn broken(error: RunError) -> Failure {
     match error {
         RunError::Broke(message) => Failure::check_failed(message),
         other => Failure::check_failed(format!("the run ended: {other:?}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A viewer's thread that waited for its answer would hang.
+    #[test]
+    fn end_answers_waiting_commands() {
+        for by_clock in [true, false] {
+            let session = Session {
+                bus: Bus::new(Vec::new(), None, 1),
+                wire: WireName::Slcan,
+                gate: Gate::default(),
+                clients: Vec::new(),
+                log: None,
+                feeds: Vec::new(),
+                duration: 0.0,
+                received: 0,
+                sent: 0,
+                left: (0, 0),
+                started: Instant::now(),
+            };
+            let (sender, events) = channel();
+            let (answered, answer) = channel();
+            sender.send(Event::Control("{}".to_owned(), answered)).expect("the twin runs");
+            let run =
+                || if by_clock { session.run_by_clock(events, 1.0) } else { session.run_in_lockstep(events, 1e-3) };
+            run().expect("it ends");
+            assert!(
+                answer.recv_timeout(Duration::from_secs(1)).is_err_and(|error| error == RecvTimeoutError::Disconnected)
+            );
+        }
     }
 }

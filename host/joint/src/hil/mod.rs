@@ -15,6 +15,8 @@ use scenario::suite;
 /// Runs a joint or test files; fails if a check fails.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::keep_for_json(arguments.json.as_deref());
+    // Before any image is built.
+    arguments.live.view.check()?;
     Progress::during(|progress| {
         if suite::holds_tests(arguments.file()) {
             return scenario::run(&tests::test_request(arguments)?, progress);

@@ -45,8 +45,7 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
             .with_help("leave one of them out"));
     }
     let role = arguments.role.map_or(Role::Loop, Role::from);
-    let is_live = arguments.live.view.live.is_some() || arguments.live.view.live_udp.is_some();
-    if is_live && !arguments.host && role == Role::Loop {
+    if arguments.live.view.is_wanted() && !arguments.host && role == Role::Loop {
         return Err(Failure::new(
             "a live view shows plants on this machine, and with --role loop the plant is on the board",
         )

@@ -13,6 +13,8 @@ mod image;
 mod line;
 mod lost_motion;
 mod round_trips;
+#[path = "../scripts/mod.rs"]
+mod scripts;
 mod twin;
 
 use environment::Environment;

@@ -4,18 +4,22 @@
 #[path = "../command/mod.rs"]
 mod command;
 mod node;
+#[path = "../scripts/mod.rs"]
+mod scripts;
 
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::net::TcpStream;
+use std::net::{TcpStream, UdpSocket};
 use std::path::Path;
 use std::process::Child;
+use std::thread;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use command::{TIMEOUT, folder, interrupt, joint, start, text, wait, within};
+use command::{TIMEOUT, folder, interrupt, joint, joint_in, start, text, wait, within};
 use node::Node;
 use report::workspace::workspace;
 use serde_json::Value;
-use tungstenite::{Message, client};
+use tungstenite::{Message, WebSocket, client};
 
 /// Address of the page, from a line that names it.
 fn address(line: &str) -> Option<String> {
@@ -33,12 +37,17 @@ fn announced(child: &mut Child, on_errors: bool) -> String {
     found.expect("the command names its address")
 }
 
-/// Viewer that connects and never reads.
-fn stuck_viewer(address: &str) -> TcpStream {
+/// Socket of the page, behind its greeting.
+fn viewer(address: &str) -> WebSocket<TcpStream> {
     let stream = TcpStream::connect(address).expect("it listens");
     let (mut socket, _) = client(format!("ws://{address}/live"), stream).expect("a socket");
     assert!(matches!(socket.read(), Ok(Message::Text(_))), "the greeting");
-    socket.get_ref().try_clone().expect("a second handle")
+    socket
+}
+
+/// Viewer that connects and never reads.
+fn stuck_viewer(address: &str) -> TcpStream {
+    viewer(address).get_ref().try_clone().expect("a second handle")
 }
 
 /// Runs a command without a view, then with a viewer that never reads; returns the files that both wrote.
@@ -89,6 +98,80 @@ fn stuck_viewer_leaves_log_of_twin() {
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let [alone, seen] = [alone, seen].map(|log| fs::read(log).expect("it was written"));
     assert!(alone.len() > 10_000 && alone == seen, "{} and {} bytes", alone.len(), seen.len());
+}
+
+/// PlotJuggler is no viewer; and the clock of the samples starts with the run, after the wait.
+#[test]
+fn twin_waits_for_viewer_beside_plotjuggler() {
+    let plotjuggler = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let udp = format!("--live-udp={}", plotjuggler.local_addr().expect("an address"));
+    let twin = ["twin", "q1", "--plant", "core", "--for", "0.2", "--live=127.0.0.1:0", "--live-wait", &udp];
+    let mut child = start(&twin);
+    let address = announced(&mut child, false);
+    thread::sleep(Duration::from_millis(500));
+    plotjuggler.set_nonblocking(true).expect("a socket of ours");
+    let mut datagram = [0; 4096];
+    assert!(plotjuggler.recv(&mut datagram).is_err(), "the run waits");
+    let connected = SystemTime::now().duration_since(UNIX_EPOCH).expect("a clock").as_secs_f64();
+    let _viewer = viewer(&address);
+    plotjuggler.set_nonblocking(false).expect("a socket of ours");
+    plotjuggler.set_read_timeout(Some(TIMEOUT)).expect("a limit");
+    let length = plotjuggler.recv(&mut datagram).expect("a datagram");
+    let value: Value = serde_json::from_slice(&datagram[..length]).expect("JSON");
+    let first = value["timestamp"].as_f64().expect("a number");
+    assert!(first >= connected, "the first sample is {} s old", connected - first);
+    assert_eq!(wait(child).code, Some(0));
+}
+
+/// A run that fills the memory for the tested run is no run of the test.
+#[test]
+fn hil_shows_tested_run_from_memory() {
+    let place = folder();
+    let file = place.path().join("memory.toml");
+    let test = "duration_s = 1\nsettle_s = 0.2\nseeds = [1]\nprofile = \"T2\"\n[controller]\nrivals = []\nfrom_memory = true\n";
+    fs::write(&file, test).expect("room");
+    let out = place.path().join("out");
+    let hil = ["hil", text(&file), "--host", "--live=127.0.0.1:0", "--live-wait", "--out", text(&out)];
+    let mut child = start(&hil);
+    let mut viewer = viewer(&announced(&mut child, true));
+    let mut shown = Vec::new();
+    while let Ok(message) = viewer.read() {
+        if let Message::Text(text) = message {
+            let value: Value = serde_json::from_str(&text).expect("JSON");
+            shown.extend(value["name"].as_str().map(str::to_owned));
+        }
+    }
+    let ended = wait(child);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert_eq!(shown.len(), 1, "{shown:?}");
+}
+
+#[test]
+fn options_of_view_need_view() {
+    for command in [&["twin"][..], &["sim"], &["hil", "q1"]] {
+        joint(&[command, &["--live-network"]].concat()).refused(&["--live"]);
+    }
+    for command in [&["sim"][..], &["hil", "q1"]] {
+        joint(&[command, &["--live-speed", "1"]].concat()).refused(&["--live"]);
+    }
+}
+
+/// A view tells joints apart by their identifiers.
+#[test]
+fn view_refuses_joints_of_one_identifier() {
+    for view in ["--live=127.0.0.1:0", "--live-udp"] {
+        let ended = joint(&["twin", "--same-id", "--id", "1=q1", "--id", "1=d2", "--for", "0.1", view]);
+        ended.refused(&["--same-id", "an identifier of its own"]);
+    }
+}
+
+/// `joint hil` alone builds images before it runs a test.
+#[test]
+fn bad_address_is_refused_before_any_build() {
+    let place = folder();
+    let ended = joint_in(place.path(), &["hil", "--live=nowhere"]);
+    ended.refused(&["--live=nowhere is no address", "127.0.0.1:8765"]);
+    assert!(ended.out.is_empty() && command::contents(place.path()).is_empty(), "{ended:?}");
 }
 
 #[test]

@@ -87,10 +87,56 @@ await text("drive-mode", "client");
 await text("drive-state", "disabled");
 
 await page.click("#pause");
+await until("the last sample is drawn", () => document.getElementById("time").textContent === current.end.toFixed(3));
 const still = await shown("time");
 await page.waitForTimeout(400);
 assert.equal(await shown("time"), still, "a paused page stands still");
 await page.click("#pause");
+
+// The script of the page with samples of this test: its own class, functions and variables.
+const rms = await page.evaluate(() => {
+  const joint = new Joint({ planets: 1 });
+  const add = (time, error) => {
+    joint.time[joint.count] = time;
+    joint.columns.get("error_rad")[joint.count++] = error;
+  };
+  for (let index = 0; index < 900; index++) add(index / 1e3, 0);
+  for (let index = 0; index < 1000; index++) add(0.9 + index / 1e4, 1);
+  return joint.rms("error_rad", 0);
+});
+assert.ok(Math.abs(rms - Math.sqrt(0.1)) < 0.01, `error 1 for a tenth of the time has the RMS ${rms}`);
+const afterPause = await page.evaluate(() => {
+  const joint = current,
+    width = numbers.length + 2 * joint.meshes;
+  // One sample that touches a side with all meshes.
+  const row = (side) => {
+    const view = new DataView(new ArrayBuffer(HEADER + 4 * width));
+    view.setUint32(0, joint.source.number, true);
+    view.setUint32(4, lost, true);
+    view.setUint32(8, 1, true);
+    view.setFloat64(HEADER - 8, joint.end + 1e-4, true);
+    for (let column = 1; column < width; column++) view.setFloat32(HEADER + 4 * column, NaN, true);
+    for (let mesh = 0; mesh < joint.meshes / 2; mesh++) {
+      view.setFloat32(HEADER + 4 * (numbers.length + mesh), side, true);
+    }
+    return view.buffer;
+  };
+  const crossingsOf = (between) => {
+    samples(row(1));
+    const before = joint.crossings;
+    between();
+    samples(row(-1));
+    return joint.crossings - before;
+  };
+  const pause = () => {
+    paused = true;
+    samples(row(-1));
+    paused = false;
+  };
+  const known = [supplyKnown, (select(joint), supplyKnown)];
+  return { seen: crossingsOf(() => {}), hidden: crossingsOf(pause), known };
+});
+assert.deepEqual(afterPause, { seen: 1, hidden: 0, known: [true, false] });
 
 const phone = await open({ viewport: { width: 420, height: 900 }, colorScheme: "dark" });
 const wide = await phone.evaluate(() => document.documentElement.scrollWidth);

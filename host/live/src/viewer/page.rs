@@ -1,11 +1,10 @@
-//! Messages of the page: what is constant as JSON, samples as packed numbers, commands as lines of JSON.
+//! Messages of the page: descriptions and answers as JSON, samples as packed numbers.
 
-use report::contacts::families;
 use serde_json::json;
 use tungstenite::Message;
 
 use super::View;
-use crate::sample::{LISTS, NUMBERS};
+use crate::sample::NUMBERS;
 use crate::shared::{Batch, Commands};
 use crate::source::Source;
 
@@ -43,19 +42,15 @@ fn text(value: &serde_json::Value) -> Vec<Message> {
 impl View for Page {
     fn greet(&mut self) -> Vec<Message> {
         let names = NUMBERS.map(|(name, ..)| name);
-        let lists = LISTS.map(|(name, _)| name);
         let commands = self.commands.is_some() && self.is_near;
-        text(&json!({
-            "type": "hello", "title": self.title, "commands": commands, "numbers": names, "lists": lists
-        }))
+        text(&json!({ "type": "hello", "title": self.title, "commands": commands, "numbers": names }))
     }
 
     fn source(&mut self, source: &Source) -> Vec<Message> {
         let description = &source.description;
         text(&json!({
             "type": "source", "number": source.number, "id": description.id, "name": description.name,
-            "planets": description.planets, "ratio": description.ratio, "rated_torque_N_m": description.rated_torque,
-            "families": families(description.planets)
+            "planets": description.planets, "ratio": description.ratio, "rated_torque_N_m": description.rated_torque
         }))
     }
 
@@ -63,8 +58,8 @@ impl View for Page {
     /// numbers, with the time from the first, then the lists of each mesh family.
     fn batch(&mut self, batch: &Batch, lost: u64) -> Vec<Message> {
         let start = batch.samples.first().map_or(0.0, |sample| sample.time);
-        let mut bytes = Vec::with_capacity(24 + batch.samples.len() * 4 * 40);
-        for whole in [batch.source.number, lost.min(u32::MAX.into()) as u32, batch.samples.len() as u32, 0] {
+        let mut bytes = Vec::with_capacity(20 + batch.samples.len() * 4 * 40);
+        for whole in [batch.source.number, lost.min(u32::MAX.into()) as u32, batch.samples.len() as u32] {
             bytes.extend(whole.to_le_bytes());
         }
         bytes.extend(start.to_le_bytes());

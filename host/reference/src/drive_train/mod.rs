@@ -89,6 +89,13 @@ pub struct TrueTorques {
     pub payload: f64,
 }
 
+impl TrueTorques {
+    /// Torque that brakes the link without the payload's spring and damper: friction, weight and disturbances [N m].
+    pub fn load(&self) -> f64 {
+        self.load_friction + self.gravity + self.disturbance
+    }
+}
+
 /// Joint with its drive train; `J` is the joint model.
 #[derive(Debug, Clone)]
 pub struct DriveTrain<J = Reference> {
@@ -242,7 +249,7 @@ impl<J: JointModel> DriveTrain<J> {
             let torques = self.torques_now(part);
             self.torques = torques;
             let drive = torques.air_gap + torques.cogging - torques.motor_friction;
-            let load = torques.load_friction + torques.gravity + torques.disturbance + torques.payload;
+            let load = torques.load() + torques.payload;
             self.parts_done += 1;
             let end = self.moment(self.parts_done as f64, f64::from(part + 1));
             self.joint_model.advance(end, drive, load, self.stepping)?;

@@ -22,3 +22,4 @@ pub use observation::{Observation, Work};
 pub use reference::Reference;
 pub use start::{RelativeState, Start};
 pub use validity::ReferenceError;
+pub use wear::mean_half_backlash;

@@ -3,9 +3,16 @@
 //!
 //! Equations: (R3) in docs/theory/real-joints.md.
 
+use parameters::JointParameters;
+
 use super::hysteresis::Slip;
 use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
+
+/// Half-backlash of a joint, mean over the planets [m].
+pub fn mean_half_backlash(joint: &JointParameters) -> f64 {
+    joint.sun_planet.half_backlash.iter().sum::<f64>() / joint.geometry.planets as f64
+}
 
 impl Reference {
     /// Lets a share of the stiffness between carrier and link slip at a torque [N m]; without effect on a joint without

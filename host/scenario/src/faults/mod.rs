@@ -15,6 +15,7 @@ use reference::joint::Observation;
 
 use active::ActiveFault;
 use teeth::ToothState;
+pub use teeth::check_broken_tooth;
 
 use super::file::{Fault, HostOnlyFault, fault_is_active};
 use super::plant::Teeth;

@@ -4,11 +4,27 @@ use std::f64::consts::TAU;
 
 use model_core::virtual_joint::fault::FaultKind;
 use parameters::JointParameters;
-use reference::joint::Observation;
+use reference::joint::{Observation, mean_half_backlash};
 
 use super::active::ActiveFault;
-use crate::file::{HostOnlyFault, fault_is_active};
-use crate::plant::{Teeth, half_backlash};
+use crate::file::{Fault, HostOnlyFault, fault_is_active};
+use crate::plant::{PlantName, Teeth};
+use report::failure::{Failure, Outcome};
+
+/// Rejects a broken tooth of a plant without teeth; `help` is the remedy for the core's plant.
+pub fn check_broken_tooth(faults: &[Fault], joint: &JointParameters, plant: PlantName, help: &str) -> Outcome<()> {
+    let is_broken = |fault: &Fault| matches!(fault.kind, FaultKind::Other(HostOnlyFault::BrokenTooth(_)));
+    let (message, help) = match plant {
+        _ if !faults.iter().any(is_broken) => return Ok(()),
+        _ if joint.equivalent_gear().is_some() => (
+            format!("joint `{}` is an equivalent gear, which has no tooth to break", joint.name),
+            "leave the broken tooth out, or name a joint with teeth",
+        ),
+        PlantName::Core => ("the core's planets share their stiffness, so no tooth of it can break".to_owned(), help),
+        PlantName::Reference => return Ok(()),
+    };
+    Err(Failure::new(message).with_help(help))
+}
 
 /// Original and current state of the teeth.
 #[derive(Debug, Clone)]
@@ -25,7 +41,7 @@ pub(super) struct ToothState {
 impl ToothState {
     /// Original state of the teeth.
     pub fn new(joint: &JointParameters) -> Self {
-        let half_backlash = half_backlash(joint);
+        let half_backlash = mean_half_backlash(joint);
         Self {
             half_backlash,
             half_backlash_now: half_backlash,

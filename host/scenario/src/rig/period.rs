@@ -41,7 +41,6 @@ impl Period<'_> {
 
     /// Torque that brakes the link [N m].
     pub fn load_torque(&self) -> f64 {
-        let torques = self.plant.torques();
-        torques.load_friction + torques.gravity + torques.disturbance
+        self.plant.torques().load()
     }
 }

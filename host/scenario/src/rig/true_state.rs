@@ -7,9 +7,8 @@ use model_core::observer::{Estimate, Estimates, Shaft, Source};
 use parameters::{ContactState, JointParameters};
 use reference::closed_loop::SetPoint;
 use reference::drive_train::TrueTorques;
-use reference::joint::Observation;
+use reference::joint::{Observation, mean_half_backlash};
 
-use crate::plant::half_backlash;
 use crate::port::{command, position};
 
 /// Share of the half-gap above which a gap coordinate counts as contact [-]: meshes deflect by a few percent of the gap
@@ -36,7 +35,7 @@ impl<'t> TrueStateCompensation<'t> {
         Self {
             compensation: Compensation::new(tables),
             estimates: Estimates::default(),
-            half_backlash: half_backlash(joint),
+            half_backlash: mean_half_backlash(joint),
             compliance: joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness),
             lever: joint.geometry.carrier_base_radius(),
             ratio: joint.geometry.ratio_by_teeth(),
@@ -63,7 +62,7 @@ impl<'t> TrueStateCompensation<'t> {
             contact_valid: true,
             settled: contact != ContactState::Separated,
             mesh_torque: exact(2.0 * self.lever * joint.sun_force()),
-            load_torque: exact(torques.load_friction + torques.gravity + torques.disturbance),
+            load_torque: exact(torques.load()),
             half_backlash: exact(self.half_backlash),
             compliance: exact(self.compliance),
             motor_lead: joint.motor_angle / self.ratio - joint.link_angle,

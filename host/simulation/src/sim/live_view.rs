@@ -4,7 +4,7 @@ use live::{Description, Sample};
 use model_core::gears::Kinematics;
 use parameters::JointParameters;
 use reference::drive_train::TrueTorques;
-use reference::joint::Observation;
+use reference::joint::{Observation, mean_half_backlash};
 
 use super::snapshot::Snapshot;
 
@@ -21,13 +21,12 @@ pub fn description(id: u8, name: &str, joint: &JointParameters) -> Description {
 
 /// Snapshot as a sample. The desired angle of the link is the motor's over the ratio, so that its error is the twist.
 pub fn sample(joint: &JointParameters, snapshot: &Snapshot) -> Sample {
-    let half_backlash = joint.sun_planet.half_backlash.iter().sum::<f64>() / joint.geometry.planets as f64;
     let mut sample = Sample {
         wanted: snapshot.link_angle() + snapshot.twist(joint),
         link: snapshot.link_angle(),
         motor: snapshot.motor_angle(joint),
         gap: snapshot.gap,
-        half_backlash,
+        half_backlash: mean_half_backlash(joint),
         mesh_force: snapshot.teeth.iter().take(snapshot.teeth.len() / 2).map(|mesh| mesh.force).sum(),
         load_torque: snapshot.load,
         motor_torque: snapshot.drive,
@@ -47,7 +46,7 @@ pub fn true_sample(joint: &Observation, torques: &TrueTorques, half_backlash: f6
         gap: joint.gap,
         half_backlash,
         mesh_force: joint.sun_force(),
-        load_torque: torques.load_friction + torques.gravity + torques.disturbance,
+        load_torque: torques.load(),
         motor_torque: torques.air_gap,
         ..Sample::at(joint.time)
     };

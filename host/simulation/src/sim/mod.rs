@@ -78,7 +78,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::RUN_FILES)?;
-    let live = Live::start_paced(&arguments.live, "joint sim", progress)?;
+    let live = Live::start_paced(&arguments.live, "joint sim")?;
+    live.iter().for_each(|live| live.announce(progress));
     let mut feed = live.as_ref().and_then(|live| live.feed(live_view::description(1, &plan.name, plan.parameters())));
     // An interruption must still finish the history.
     let uninterrupted = UninterruptedWork::begin();

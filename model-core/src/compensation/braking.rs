@@ -214,7 +214,7 @@ impl<T: Real> BrakingLimit<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compensation::test_bench::{state, tables};
+    use crate::compensation::test_bench::{q1, state, tables};
 
     /// Deceleration of 10 N m at 4 kg m^2, of which 0.9 are planned [rad/s^2].
     const DECELERATION: f64 = 0.9 * 10.0 / 4.0;
@@ -305,5 +305,16 @@ mod tests {
         let acceleration =
             |teeth_open| limit(3.0, 0.0).acceleration(&tables, &load, &LoopState { teeth_open, ..state() }, 7.0);
         assert_eq!((acceleration(true), acceleration(false)), (-1.0, 1.0));
+    }
+
+    #[test]
+    fn braking_is_planned_with_nine_tenths() {
+        let tables = q1::<f64>();
+        let limit = BrakingLimit::new(&tables, &LoadModel::of_known(0.0, 0.0), &state());
+        // Error at which the linear law brakes 4 kg m^2 with a share of the motor's torque at 60 rad/s.
+        let is_linear = |share: f64| {
+            limit.approach(share * tables.limits.motor / (4.0 * 60.0 * 60.0), &set_point(0.0, 0.0)).is_none()
+        };
+        assert!(is_linear(0.89) && !is_linear(0.91));
     }
 }

@@ -53,7 +53,7 @@ impl<T: Real> CrossingTiming<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compensation::test_bench::tables;
+    use crate::compensation::test_bench::{q1, tables};
 
     #[test]
     fn wide_gap_has_a_steady_speed() {
@@ -100,5 +100,22 @@ mod tests {
         let mut tables = tables();
         tables.crossing.strike_speed_per_torque = 0.0;
         assert_eq!(CrossingTiming::new(&tables, 2e-3, 5.0).duration, 60e-3);
+    }
+
+    #[test]
+    fn ramp_takes_four_fifths_of_torque() {
+        let tables = q1::<f64>();
+        let CrossingTiming { ramp, .. } = CrossingTiming::at(1.0, 1.0, tables.crossing.ramp_per_speed, 0.0);
+        // A ramp without a jump accelerates by one and a half times its mean.
+        let torque = tables.body.motor_inertia * 1.5 / ramp;
+        assert!((torque / tables.limits.motor - 0.8).abs() < 1e-9, "{torque}");
+    }
+
+    #[test]
+    fn crossing_takes_at_most_three_guesses() {
+        let tables = q1::<f64>();
+        let duration =
+            |half_backlash: f64| CrossingTiming::new(&tables, half_backlash * tables.gear.inverse_lever, 0.0).duration;
+        assert!((duration(1.0) / duration(40e-6) - 3.0).abs() < 1e-9);
     }
 }

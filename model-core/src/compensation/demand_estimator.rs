@@ -246,4 +246,15 @@ mod tests {
         assert!(!transmitted(4.0, 2.0) && transmitted(4.0, 2.1) && transmitted(-4.0, -2.1));
         assert!(!transmitted(4.0, -2.1));
     }
+
+    #[test]
+    fn friction_is_at_most_half_of_limit() {
+        let mut demand = DemandEstimator::new(&tables());
+        for period in 0..2000 {
+            let side = if (period / 10) % 2 == 0 { 1.0 } else { -1.0 };
+            demand.plan(&tables(), &motion(0.1 * side, 0.0)).expect("a number");
+            demand.estimate(&tables(), 9.0 * side);
+        }
+        assert_eq!(demand.load.friction, 5.0);
+    }
 }

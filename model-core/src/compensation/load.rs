@@ -412,4 +412,18 @@ mod tests {
         };
         assert!((followed(true) - 0.3).abs() < 1e-9 && (followed(false) - 0.3 / 8.0).abs() < 1e-9);
     }
+
+    #[test]
+    fn cut_pauses_friction_for_69_periods() {
+        let friction = |periods: u32| {
+            let mut load = LoadModel::of_known(0.0, 1.0);
+            load.record_saturation(&tables(), true);
+            (0..periods).for_each(|_| load.record_saturation(&tables(), false));
+            load.update(&tables(), &measured(5.0), &moving(0.1), true);
+            load.friction()
+        };
+        // 0.99^69 is a half: 0.7 transients of 100 periods.
+        assert_eq!(friction(68), 1.0);
+        assert!(friction(69) > 1.0);
+    }
 }

@@ -206,7 +206,7 @@ pub(super) fn friction_direction<T: Real>(tables: &CompensationTables<T>, speed:
 mod tests {
     use super::*;
     use crate::compensation::set_point::{ImpedancePoint, Motion};
-    use crate::compensation::test_bench::{state, tables};
+    use crate::compensation::test_bench::{q1, state, tables};
     use crate::observer::OutputFault;
 
     /// Estimates of a joint that sees both shafts, with everything valid.
@@ -346,5 +346,30 @@ mod tests {
     fn damper_opposes_a_motor_ahead_of_the_link() {
         let state = LoopState { motor_speed: 0.3, link_speed: 0.1, transmission_error_speed: 0.1, ..state() };
         assert!((state.damping_torque(&tables()) + 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn compliance_is_within_factor_of_four() {
+        let tables = q1();
+        let stiffness = |compliance: f64| {
+            let mut estimates = estimates();
+            estimates.compliance.value = compliance;
+            stiffness(&tables, &estimates)
+        };
+        // From a quarter to four times the joint file's stiffness.
+        assert!((stiffness(0.0) / stiffness(1.0) - 16.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn half_gap_is_at_most_five_guesses() {
+        let tables = q1();
+        let half_gap = |value: f64| {
+            let mut estimates = estimates();
+            estimates.half_backlash.value = value;
+            half_gap(&tables, &estimates) / tables.gear.inverse_lever
+        };
+        // A half-backlash of 40 um is the guess.
+        let [within, beyond] = [199e-6, 201e-6].map(half_gap);
+        assert!((within - 199e-6).abs() < 1e-12 && (beyond - 200e-6).abs() < 1e-12, "{within} {beyond}");
     }
 }

@@ -369,7 +369,7 @@ fn planned_demand<T: Real>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compensation::test_bench::{HALF_GAP, state, tables};
+    use crate::compensation::test_bench::{HALF_GAP, q1, state, tables};
 
     fn motion(speed: f64, acceleration: f64) -> Motion<f64> {
         Motion { speed, acceleration, ..Motion::default() }
@@ -525,5 +525,34 @@ mod tests {
         let closing = LoopState { mesh_torque: 8.0, motor_speed: 0.1, ..state() };
         let torque = law_torque(&tables(), &unloaded(), &closing, 0.0, 50.0);
         assert!(torque.motor < 8.7, "{}", torque.motor);
+    }
+
+    #[test]
+    fn request_within_250_ms_is_hunting() {
+        let tables = q1();
+        let deadband = |periods: u32| {
+            let mut law = PositionLaw::new();
+            law.update_deadband(&tables, true, true, 1.0, HALF_GAP);
+            (1..periods).for_each(|_| law.update_deadband(&tables, true, true, 0.0, HALF_GAP));
+            law.update_deadband(&tables, true, true, -1.0, HALF_GAP);
+            law.deadband / FIRST
+        };
+        // Periods of 0.1 ms; a request for the opposite flank widens the dead band, which opens within a second.
+        assert!(deadband(2400) > 1.0 && deadband(2600) < 0.5, "{} {}", deadband(2400), deadband(2600));
+    }
+
+    #[test]
+    fn dead_band_ends_at_half_of_half_gap() {
+        let (tables, mut law) = (q1(), PositionLaw::new());
+        [1.0, -1.0].repeat(5).iter().for_each(|side| law.update_deadband(&tables, true, true, *side, HALF_GAP));
+        assert!((law.deadband - 0.5 * HALF_GAP).abs() < 1e-9, "{}", law.deadband);
+    }
+
+    #[test]
+    fn grown_dead_band_decays_in_30_seconds() {
+        let (tables, mut law) = (q1(), PositionLaw { deadband: 8.0 * FIRST, ..PositionLaw::new() });
+        // 0.3 s leave exp(-0.01).
+        (0..3000).for_each(|_| law.update_deadband(&tables, true, true, 0.0, HALF_GAP));
+        assert!((law.deadband / (8.0 * FIRST) - 0.99).abs() < 1e-3, "{}", law.deadband / FIRST);
     }
 }

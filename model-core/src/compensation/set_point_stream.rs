@@ -76,7 +76,7 @@ impl<T: Real> SetPointStream<T> {
 mod tests {
     use super::*;
     use crate::compensation::set_point::Position;
-    use crate::compensation::test_bench::tables;
+    use crate::compensation::test_bench::{q1, tables};
 
     /// Returns a stream of set-points with a torque [N m], each held for a number of periods.
     fn stream(torques: &[f64], periods: u32) -> SetPointStream<f64> {
@@ -132,5 +132,17 @@ mod tests {
             stream.step(&tables(), &ImpedancePoint { position, ..ImpedancePoint::default() });
         }
         assert_eq!(stream.direction(), -0.25);
+    }
+
+    #[test]
+    fn set_point_held_for_5_ms_rests() {
+        let tables = q1::<f64>();
+        let rests = |periods: u32| {
+            let mut stream = SetPointStream::default();
+            (0..=periods).for_each(|_| stream.step(&tables, &ImpedancePoint::default()));
+            stream.rests(&tables)
+        };
+        // Periods of 0.1 ms. A stream sends at least 200 set-points per second.
+        assert!(!rests(49) && rests(51));
     }
 }

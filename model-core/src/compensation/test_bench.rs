@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::control_demand::ControlDemand;
+use super::design::{compensation_settings, design_compensation};
 use super::loop_state::LoopState;
 use super::set_point::Position;
 use super::tables::{
@@ -10,6 +11,7 @@ use super::tables::{
     LoadModelTable, MonitorTable, RestTable, SwitchingTable,
 };
 use crate::gears::Flank;
+use crate::numbers::Real;
 
 /// Half of the lost motion in [`state`] [rad].
 pub const HALF_GAP: f64 = 2e-3;
@@ -108,6 +110,12 @@ pub fn tables() -> CompensationTables<f64> {
             longer: 4.0,
         },
     }
+}
+
+/// Tables of Q1 at 60 rad/s and 10 kHz; half-backlash of 40 um.
+pub fn q1<T: Real>() -> CompensationTables<T> {
+    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+    design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0)).expect("tables")
 }
 
 /// State of a joint at rest at its set-point, whose drive flank touches without a force.

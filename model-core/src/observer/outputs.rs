@@ -253,7 +253,47 @@ fn into_turn<T: Real>(turns: i32, fraction: T) -> (i32, T) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::identification::regressors::{COMPLIANCE, PLAIN};
     use super::*;
+    use crate::observer::test_tables::{estimator, observer};
+
+    /// Estimates of a joint with a half-gap of 80 um and a compliance of 1 um/N, after a change of their variances.
+    fn published(change: impl FnOnce(&mut ParameterEstimator<f32, PLAIN>)) -> Estimates<f32> {
+        let (tables, mut estimates) = (observer(), Estimates::default());
+        let mut estimator = estimator(&tables);
+        estimator.least_squares.values[COMPLIANCE] = 1e-6;
+        change(&mut estimator);
+        publish_parameters(&tables, &estimator, true, &mut estimates);
+        estimates
+    }
+
+    #[test]
+    fn half_gap_known_to_an_eighth_is_valid() {
+        let is_valid = |deviation: f32| {
+            let estimates = published(|estimator| estimator.uncertainty.variances = [deviation * deviation; 4]);
+            assert_eq!(estimates.half_backlash.valid, estimates.encoder_offset.valid);
+            estimates.half_backlash.valid
+        };
+        assert!(is_valid(9.9e-6) && !is_valid(10.1e-6));
+    }
+
+    #[test]
+    fn compliance_known_to_22_percent_is_valid() {
+        let is_valid = |deviation: f32| {
+            published(|estimator| estimator.uncertainty.variances[2] = deviation * deviation).compliance.valid
+        };
+        assert!(is_valid(0.22e-6) && !is_valid(0.23e-6));
+    }
+
+    #[test]
+    fn bias_with_half_its_variance_is_valid() {
+        // Prior variance of 4 N^2.
+        let is_valid = |variance: f32| {
+            let estimates = published(|estimator| estimator.bias.variance = [variance, variance, 0.0]);
+            [estimates.torque_bias.valid, estimates.motor_friction.valid]
+        };
+        assert_eq!((is_valid(1.9), is_valid(2.1)), ([true; 2], [false; 2]));
+    }
 
     #[test]
     fn fraction_within_turn_is_kept() {

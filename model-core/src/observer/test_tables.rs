@@ -1,11 +1,48 @@
 //! Tables with round numbers, for unit tests.
 
+use std::sync::LazyLock;
+
+use super::design::{design_observer, observer_settings};
+use super::identification::ParameterEstimator;
+use super::identification::regressors::{HALF_GAP, PLAIN};
 use super::tables::{
-    ContactTable, CurrentTable, DriveTable, LearnerTable, LoadTable, MOST_PARAMETERS, StopTable, SupervisorTable,
+    ContactTable, CurrentTable, DriveTable, LearnerTable, LoadTable, MOST_PARAMETERS, ObserverTables, StopTable,
+    SupervisorTable,
 };
+use crate::numbers::Real;
 
 /// Prior standard deviation of each parameter.
 pub const DEVIATION: f32 = 1e-3;
+
+/// Tables of Q1, designed once for all tests.
+static Q1: LazyLock<ObserverTables<f32>> = LazyLock::new(q1);
+
+/// Tables of Q1.
+pub fn q1<T: Real>() -> ObserverTables<T> {
+    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+    design_observer(&q1.parameters, &observer_settings(&q1.surroundings)).expect("tables")
+}
+
+/// Tables of Q1 with the round numbers below.
+pub fn observer() -> ObserverTables<f32> {
+    ObserverTables {
+        current: current(),
+        drive: drive(),
+        load: load(),
+        contact: contact(),
+        learner: learner(),
+        supervisor: supervisor(),
+        ..Q1.clone()
+    }
+}
+
+/// Estimator of a joint with exactly known parameters: a half-gap of 80 um, no compliance, no errors.
+pub fn estimator(tables: &ObserverTables<f32>) -> ParameterEstimator<f32, PLAIN> {
+    let mut estimator = ParameterEstimator::uninitialized(tables);
+    estimator.least_squares.values[HALF_GAP] = 80e-6;
+    estimator.uncertainty.half_gap_is_known = true;
+    estimator
+}
 
 /// Current loop without delay and lag.
 pub fn current() -> CurrentTable<f32> {

@@ -1,9 +1,9 @@
 //! Tests of the demand estimated from the torque of a joint whose data sheet states the friction.
 
-use super::monitor_tests::tables;
 use crate::compensation::demand_estimator::DemandEstimator;
 use crate::compensation::set_point::Motion;
 use crate::compensation::tables::CompensationTables;
+use crate::compensation::test_bench::q1 as tables;
 
 /// Returns tables with a dry friction of motor and link on the data sheet [N m at the link].
 fn with_friction(motor: f32, link: f32) -> CompensationTables<f32> {

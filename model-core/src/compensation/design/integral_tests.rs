@@ -1,8 +1,8 @@
 //! Tests of the integral under the motor's limit.
 
-use super::monitor_tests::tables;
 use crate::compensation::integral::Integral;
 use crate::compensation::tables::CompensationTables;
+use crate::compensation::test_bench::q1 as tables;
 
 /// Returns an integral whose torque has swung from limit to limit.
 fn swinging(tables: &CompensationTables<f32>) -> Integral<f32> {

@@ -1,10 +1,10 @@
 //! Tests of the adaptive inverse of the backlash with designed tables, in control of a motor and a link with play.
 
-use super::monitor_tests::tables;
 use crate::compensation::inverse::BacklashInverse;
 use crate::compensation::loop_state::LoopState;
 use crate::compensation::set_point::{CommandRef, Motion, Position};
 use crate::compensation::tables::CompensationTables;
+use crate::compensation::test_bench::q1 as tables;
 use crate::observer::{Estimates, Source};
 
 /// Half of the play [rad].

@@ -1,18 +1,12 @@
 //! Tests of the loop monitor with designed tables.
 
-use crate::compensation::design::{compensation_settings, design_compensation};
 use crate::compensation::loop_state::LoopState;
 use crate::compensation::monitor::{LoopMonitor, MonitorInput};
 use crate::compensation::set_point::{CommandRef, Motion};
 use crate::compensation::tables::CompensationTables;
+use crate::compensation::test_bench::q1 as tables;
 use crate::gears::Flank;
 use crate::observer::Estimates;
-
-/// Returns the tables of Q1 at 60 rad/s.
-pub(super) fn tables() -> CompensationTables<f32> {
-    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
-    design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0)).expect("tables")
-}
 
 /// Returns a state with an error of a part of half the lost motion.
 fn state(tables: &CompensationTables<f32>, part: f32) -> LoopState<f32> {

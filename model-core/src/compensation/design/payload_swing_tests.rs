@@ -2,8 +2,8 @@
 
 use core::f32::consts::TAU;
 
-use super::monitor_tests::tables;
 use crate::compensation::payload_swing::PayloadSwing;
+use crate::compensation::test_bench::q1 as tables;
 
 /// Returns true if a load, a function of time and of the uncertainty of measured torques, swings or may swing after 3
 /// s.

@@ -1,16 +1,13 @@
 //! Tests of the noise of a rest, estimated from innovations (O13).
 
-use super::{design_observer, observer_settings};
 use crate::gears::Flank;
 use crate::observer::identification::least_squares::LeastSquares;
 use crate::observer::identification::regressors::MAPPED;
 use crate::observer::identification::uncertainty::Uncertainty;
-use crate::observer::tables::ObserverTables;
+use crate::observer::test_tables::q1;
 
 fn uncertainty() -> Uncertainty<f64> {
-    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
-    let tables: ObserverTables<f64> =
-        design_observer(&q1.parameters, &observer_settings(&q1.surroundings)).expect("tables");
+    let tables = q1();
     let (mut least_squares, mut uncertainty) = (LeastSquares::<_, MAPPED>::UNINITIALIZED, Uncertainty::uninitialized());
     least_squares.reset(&tables.learner);
     uncertainty.reset(&tables, &least_squares);

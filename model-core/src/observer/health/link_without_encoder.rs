@@ -133,3 +133,44 @@ impl<T: Real> LinkWithoutEncoder<T> {
             * time
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::{estimator, observer};
+
+    #[test]
+    fn contact_may_have_ended_30_periods_ago() {
+        let mut tables = observer();
+        tables.load.motor_only_variance = [0.0; 2];
+        let deviation = |open_periods| {
+            let link =
+                LinkWithoutEncoder { open_periods, position_known: true, landing_speed: 10e-3, ..Default::default() };
+            link.gap_variance(&tables, &estimator(&tables)).expect("a position").square_root()
+        };
+        // 10 mm/s for 31 periods of 0.1 ms.
+        assert!((deviation(0) - 1e-6).abs() < 0.1e-6 && (deviation(1) - 31e-6).abs() < 0.1e-6, "{}", deviation(1));
+    }
+
+    #[test]
+    fn bounces_outlast_force_eight_times() {
+        let tables = observer();
+        let mut estimator = estimator(&tables);
+        estimator.uncertainty.mean_force_deviation = 1.0;
+        let mut link =
+            LinkWithoutEncoder { certain: Some(Flank::Drive), force: 10.0, landing_speed: 1.0, ..Default::default() };
+        let measurement = MeshMeasurement {
+            flank_shift: 0.0,
+            raw_deflection: 80e-6,
+            deflection: 80e-6,
+            rate: 0.0,
+            travel: 0.0,
+            motor_force: 10.0,
+            direction: 0.0,
+            force: 10.0,
+        };
+        // The smoothed force follows within 10 periods.
+        (0..80).for_each(|_| _ = link.step(&tables, &measurement, &estimator));
+        assert!((link.landing_speed - 1.0 / core::f32::consts::E).abs() < 0.01, "{}", link.landing_speed);
+    }
+}

@@ -313,7 +313,7 @@ impl<T: Real> MotorFaultDetector<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observer::test_tables::{current, drive, supervisor};
+    use crate::observer::test_tables::{current, drive, estimator, observer, supervisor};
 
     /// Motor side under an air-gap torque [N m].
     fn under(torque: f32) -> DriveSide<f32> {
@@ -397,5 +397,26 @@ mod tests {
         assert_eq!(limits.lower_speed_bound(PARTS_PER_COUNT), 1.0);
         let braked = MotorMotionLimits { unknown_torque: 1.0, ..limits };
         assert_eq!(braked.lower_speed_bound(PARTS_PER_COUNT), 0.0, "braking by 1 N m is not in the estimate yet");
+    }
+
+    #[test]
+    fn braking_for_six_periods_is_not_seen() {
+        let (side, table) = (under(0.0), supervisor());
+        let braked = MotorMotionLimits { table: &table, drive: &side, unknown_torque: 1.0, link_rate: Some(0) };
+        // 1 N m takes 1 count per period from the speed in each period.
+        assert_eq!(braked.lower_speed_bound(10 * PARTS_PER_COUNT), 4.0);
+        assert_eq!(braked.impact_speed_change(0), 6 * PARTS_PER_COUNT);
+    }
+
+    #[test]
+    fn motor_held_for_16_counts_is_blocked() {
+        let tables = observer();
+        let is_outrun = |periods: u16| {
+            let mut detector = MotorFaultDetector::default();
+            (0..periods).for_each(|_| detector.integrate_free_motion(&tables.supervisor, &under(1.1)));
+            detector.is_outrun_by_output(&tables, &estimator(&tables), 1e-3, 0.0)
+        };
+        // 1.1 N m would have moved a free motor by 1 + ... + 5 = 15 counts, and by 21 counts a period later.
+        assert!(!is_outrun(5) && is_outrun(6));
     }
 }

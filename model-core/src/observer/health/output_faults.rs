@@ -305,3 +305,41 @@ fn classify_deflection<T: Real, const P: usize>(
         DeflectionRange::Impossible
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::sensors::latency::SampleAge;
+    use crate::observer::test_tables::observer;
+
+    #[test]
+    fn speed_is_kept_over_five_lost_readings() {
+        let tables = observer();
+        let period = tables.clock.period;
+        let rate_after = |periods: u32| {
+            let mut detector = OutputFaultDetector::default();
+            let mut read = |counts: i32, output_interval: u32| {
+                let readings = SensorReadings {
+                    command: 0.0,
+                    motor: CountChange::By(0),
+                    motor_travel: 0.0,
+                    motor_interval: period,
+                    motor_age: 0,
+                    motor_sample_age: SampleAge::Fresh,
+                    output: Some(CountChange::By(counts)),
+                    output_travel: 0.0,
+                    output_age: 0,
+                    output_interval,
+                    torque_known: true,
+                    out_of_time: false,
+                };
+                detector.check_reading(&tables, &readings, true);
+                detector.rate()
+            };
+            (0..100).for_each(|_| _ = read(5, period));
+            read(5 * periods as i32, periods * period)
+        };
+        assert!(rate_after(6) > 0);
+        assert_eq!(rate_after(7), 0);
+    }
+}

@@ -86,8 +86,10 @@ mod tests {
     use crate::observer::test_tables::supervisor;
 
     const TOLERANCE: f32 = 10e-6;
-    /// Learning intervals of agreement before readmission, and travel that proves motion, in the test table.
+    /// Learning intervals of agreement and at a constant offset before readmission, and travel that proves motion, in
+    /// the test table.
     const INTERVALS: u16 = 5;
+    const INTERVALS_AT_OFFSET: u16 = 15;
     const TRAVEL: u32 = 1000;
 
     /// Steps `intervals` in motion with an offset on the drive flank, and returns the last result.
@@ -119,18 +121,16 @@ mod tests {
     #[test]
     fn constant_offset_readmits_later() {
         let mut recovery = OutputRecovery::default();
-        let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
-        assert_eq!(steps(&mut recovery, 50e-6, needed - 1, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 50e-6, INTERVALS_AT_OFFSET - 1, TRAVEL), None);
         assert_eq!(steps(&mut recovery, 50e-6, 1, TRAVEL), Some(Readmission::NewOffset));
     }
 
     #[test]
     fn drifting_offset_starts_anew() {
         let mut recovery = OutputRecovery::default();
-        let needed = INTERVALS * OUTPUT_FAULT.new_offset_factor;
-        steps(&mut recovery, 50e-6, needed - 1, TRAVEL);
+        steps(&mut recovery, 50e-6, INTERVALS_AT_OFFSET - 1, TRAVEL);
         assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), None);
-        assert_eq!(steps(&mut recovery, 61e-6, needed - 2, TRAVEL), None);
+        assert_eq!(steps(&mut recovery, 61e-6, INTERVALS_AT_OFFSET - 2, TRAVEL), None);
         assert_eq!(steps(&mut recovery, 61e-6, 1, TRAVEL), Some(Readmission::NewOffset));
     }
 

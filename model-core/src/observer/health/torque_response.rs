@@ -248,4 +248,27 @@ mod tests {
         check.interrupt();
         assert_eq!(check.response(), TorqueResponse::Reversed);
     }
+
+    /// First block with a response of a motor with a reversed sign under a constant torque, and the votes then and a
+    /// block before.
+    fn reversed_until(response: TorqueResponse) -> (u16, [i8; 2]) {
+        let after = |blocks| {
+            let mut check = TorqueResponseCheck::default();
+            drive(&mut check, -1.0, blocks, |_| 1.0);
+            check
+        };
+        let first = (1..100).find(|blocks| after(*blocks).response() == response).expect("the response");
+        (first, [first - 1, first].map(|blocks| after(blocks).votes))
+    }
+
+    #[test]
+    fn four_votes_show_reversed_sign() {
+        assert_eq!(reversed_until(TorqueResponse::Reversed).1, [-3, -4]);
+    }
+
+    #[test]
+    fn two_blocks_against_torque_start_test() {
+        // The first comparison needs four blocks without an impact.
+        assert_eq!(reversed_until(TorqueResponse::Tested).0, 5);
+    }
 }

@@ -132,9 +132,9 @@ mod tests {
         consistency
     }
 
-    /// Verdict on force between the flanks that lasts for `CONSISTENCY.gap_force_intervals` intervals.
+    /// Verdict on force between the flanks that lasts for 24 intervals.
     fn lasting_force(consistency: &mut Consistency, deviation: DeviationSize) -> ParameterAction {
-        for _ in 1..CONSISTENCY.gap_force_intervals {
+        for _ in 1..24 {
             assert_eq!(consistency.check_gap_force(Some(deviation)), ParameterAction::Keep);
         }
         consistency.check_gap_force(Some(deviation))
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn narrower_gap_is_variation_three_times() {
         let mut consistency = trusted();
-        for _ in 0..CONSISTENCY.variation_errors {
+        for _ in 0..3 {
             assert_eq!(
                 lasting_force(&mut consistency, DeviationSize::WithinVariation),
                 ParameterAction::InflateHalfGap
@@ -164,15 +164,27 @@ mod tests {
     }
 
     #[test]
-    fn accepted_dwells_clear_variation_errors() {
-        let mut consistency = trusted();
-        for _ in 0..3 * CONSISTENCY.variation_errors {
-            assert_eq!(
-                lasting_force(&mut consistency, DeviationSize::WithinVariation),
-                ParameterAction::InflateHalfGap
-            );
-            (0..CONSISTENCY.dwells_until_forgiven).for_each(|_| consistency.accept(Some(Flank::Drive)));
-        }
+    fn variation_is_forgiven_after_64_dwells() {
+        let fourth_error = |dwells| {
+            let mut consistency = trusted();
+            for _ in 0..3 {
+                lasting_force(&mut consistency, DeviationSize::WithinVariation);
+            }
+            (0..dwells).for_each(|_| consistency.accept(Some(Flank::Drive)));
+            lasting_force(&mut consistency, DeviationSize::WithinVariation)
+        };
+        assert_eq!(fourth_error(63), ParameterAction::OutputEncoderFault);
+        assert_eq!(fourth_error(64), ParameterAction::InflateHalfGap);
+    }
+
+    #[test]
+    fn trust_needs_32_dwells_on_each_flank() {
+        let mut consistency = Consistency::default();
+        (0..31).for_each(|_| consistency.accept(Some(Flank::Back)));
+        (0..40).for_each(|_| consistency.accept(Some(Flank::Drive)));
+        assert!(!consistency.is_trusted());
+        consistency.accept(Some(Flank::Back));
+        assert!(consistency.is_trusted());
     }
 
     #[test]
@@ -205,9 +217,9 @@ mod tests {
     }
 
     #[test]
-    fn many_outliers_are_encoder_fault() {
+    fn twelve_outliers_are_encoder_fault() {
         let (mut trusted, mut untrusted) = (Consistency::default(), Consistency::default());
-        for _ in 1..CONSISTENCY.outliers_until_all {
+        for _ in 1..12 {
             assert_ne!(trusted.reject(DeviationSize::WithinTolerance, true), ParameterAction::OutputEncoderFault);
             assert_ne!(untrusted.reject(DeviationSize::WithinTolerance, false), ParameterAction::ResetAll);
         }

@@ -170,3 +170,108 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::batch::IntervalSample;
+    use super::super::interval::IntervalMean;
+    use super::super::regressors::{HALF_GAP, PLAIN, open_gap};
+    use super::*;
+    use crate::observer::test_tables::{contact, estimator, observer};
+
+    type Estimator = ParameterEstimator<f32, PLAIN>;
+
+    /// Estimator whose half-gap of 80 um has been trusted on both flanks.
+    fn trusted(tables: &ObserverTables<f32>) -> Estimator {
+        let mut estimator = estimator(tables);
+        for _ in 0..CONSISTENCY.trusted_dwells {
+            estimator.consistency.accept(Some(Flank::Drive));
+            estimator.consistency.accept(Some(Flank::Back));
+        }
+        estimator
+    }
+
+    /// Decision on a dwell that shows a half-gap on the drive flank wider by `excess` [m]; the noise is 1 um.
+    fn dwell_beyond(estimator: &mut Estimator, tables: &ObserverTables<f32>, excess: f32) -> ParameterAction {
+        let open_gap = open_gap(0.0, 0, None);
+        let sample =
+            IntervalSample { open_gap: &open_gap, mesh: &[0.0; 2], raw_deflection: 80e-6 + excess, force: 0.0 };
+        for _ in 0..tables.learner.block {
+            estimator.batch.add(&sample, Dwell::On(Some(Flank::Drive)), 2, &tables.learner);
+        }
+        estimator.check_dwell(tables)
+    }
+
+    #[test]
+    fn dwell_within_five_sigma_is_accepted() {
+        let tables = observer();
+        let is_accepted = |excess| {
+            let mut estimator = estimator(&tables);
+            dwell_beyond(&mut estimator, &tables, excess);
+            estimator.pending_innovation.is_some()
+        };
+        assert!(is_accepted(4.9e-6) && is_accepted(-4.9e-6));
+        assert!(!is_accepted(5.1e-6) && !is_accepted(-5.1e-6));
+    }
+
+    #[test]
+    fn dwell_off_by_three_eighths_is_variation() {
+        let tables = observer();
+        let second_outlier = |excess| {
+            let mut estimator = trusted(&tables);
+            assert_eq!(dwell_beyond(&mut estimator, &tables, excess), ParameterAction::Keep);
+            dwell_beyond(&mut estimator, &tables, excess)
+        };
+        // 30 um of a half-gap of 80 um.
+        assert_eq!(second_outlier(29e-6), ParameterAction::InflateHalfGap);
+        assert_eq!(second_outlier(31e-6), ParameterAction::ResetHalfGap);
+    }
+
+    #[test]
+    fn force_in_gap_is_graded_by_distance() {
+        let tables = observer();
+        let mut estimator = estimator(&tables);
+        estimator.uncertainty.steady_force_deviation = 1.0;
+        estimator.interval.steady_force = 10.0;
+        let at = |deflection| estimator.force_between_flanks(&tables, deflection, Travel::AtRest(10));
+        // 29 um and 31 um away from the flank.
+        assert_eq!(at(51e-6), Some(DeviationSize::WithinVariation));
+        assert_eq!(at(49e-6), Some(DeviationSize::BeyondVariation));
+    }
+
+    #[test]
+    fn variation_adds_an_eighth_of_half_gap() {
+        let tables = observer();
+        let mut estimator = estimator(&tables);
+        estimator.apply_action(&tables, ParameterAction::InflateHalfGap);
+        let deviation = estimator.least_squares.variance_of(&tables.learner, HALF_GAP).square_root();
+        assert!((deviation - 10e-6).abs() < 0.1e-6, "{deviation}");
+    }
+
+    #[test]
+    fn hidden_crossing_makes_rest_a_dwell() {
+        let tables = observer();
+        let dwell = |error_deviation| {
+            let mut estimator = estimator(&tables);
+            estimator.uncertainty.half_gap_is_known = false;
+            // Unknown error maps of 1 mm hide each crossing.
+            for _ in 0..9 {
+                estimator.travel.step(&contact(), 0.0, (0.0, 0.0), 1e-3, 0.0);
+            }
+            let mean = IntervalMean { raw_deflection: 0.0, motor_force: 0.0, force: 0.0, direction: 1.0 };
+            let (travel, flank) = (Travel::AtRest(10), None);
+            let interval = IntervalResult {
+                mean,
+                mesh: [0.0; 2],
+                deflection: 0.0,
+                flank_shift: 0.0,
+                travel,
+                flank,
+                error_deviation,
+            };
+            estimator.dwell(&tables, &interval, 0.0, true)
+        };
+        // A quarter of the half-gap of 80 um.
+        assert_eq!((dwell(19e-6), dwell(21e-6)), (Dwell::No, Dwell::On(None)));
+    }
+}

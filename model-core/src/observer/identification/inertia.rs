@@ -235,4 +235,17 @@ mod tests {
         let last: f32 = (0..500).fold(first, |_, _| high_pass(&mut slow, 0.1, 1.0));
         assert!(last.abs() < 1e-3, "{last}");
     }
+
+    #[test]
+    fn response_beyond_four_sigma_is_rejected() {
+        // A force of 10 N m with a mobility known to sqrt(0.08), and a noise of 1 N m: deviation of 3 N m.
+        let mobility = |innovation: f32| {
+            let mut inertia = LinkInertia { variance: 0.08, external_variance: 0.0, ..LinkInertia::new(&table()) };
+            let table = InertiaTable { memory: 0.0, ..table() };
+            inertia.correct(&table, &mut LoadSide::default(), 10.0, 10.0 + innovation);
+            inertia.mobility
+        };
+        assert!(mobility(11.9) > 1.0 && mobility(-11.9) < 1.0);
+        assert_eq!((mobility(12.1), mobility(-12.1)), (1.0, 1.0));
+    }
 }

@@ -118,3 +118,25 @@ impl<T: Real, const P: usize> LastDwell<T, P> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::regressors::{OFFSET, PLAIN};
+    use super::*;
+    use crate::observer::test_tables::learner;
+
+    #[test]
+    fn crossing_needs_four_deviations() {
+        let flank = |change: f32| {
+            // No parameter is uncertain. The link moves by 10 um in 8 intervals of 1 ms.
+            let (least_squares, mut last) = (LeastSquares::<f32, PLAIN>::UNINITIALIZED, LastDwell::NEW);
+            let mut regressors = [0.0; PLAIN];
+            (regressors[OFFSET], regressors[SKEW]) = (1.0, 1.25e-3);
+            last.store(&regressors, 0.0, Some(Flank::Back));
+            let innovation = last.innovation(&learner(), &least_squares, &regressors, change).expect("a last dwell");
+            last.flank(&learner(), &innovation, &regressors, 8e-6, 1.0)
+        };
+        // Two deflections with a noise of 1 um each: 4 sqrt(2) um, above half of the half-gap of 8 um.
+        assert_eq!((flank(5.5e-6), flank(5.8e-6)), (Some(Flank::Back), Some(Flank::Drive)));
+    }
+}

@@ -516,3 +516,22 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         self.uncertainty.update_next_part(tables, &self.least_squares, &open_gap, &contact);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::{estimator, observer};
+
+    #[test]
+    fn dwell_force_averages_16_intervals() {
+        let mut estimator = estimator(&observer());
+        // A landing with 16 N, then no force.
+        for interval in 1..=16 {
+            estimator.average_force(if interval == 1 { 16.0 } else { 0.0 }, Travel::AtRest(interval));
+        }
+        assert!((estimator.interval.dwell_force - 1.0).abs() < 1e-5);
+        (17..=32).for_each(|interval| estimator.average_force(0.0, Travel::AtRest(interval)));
+        // 16 more intervals leave (15/16)^16.
+        assert!((estimator.interval.dwell_force - 0.356).abs() < 1e-3, "{}", estimator.interval.dwell_force);
+    }
+}

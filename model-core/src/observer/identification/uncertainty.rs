@@ -241,3 +241,20 @@ impl<T: Real> Uncertainty<T> {
         self.near = if reached < largest { reached } else { largest };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::observer;
+
+    #[test]
+    fn steady_force_keeps_an_eighth_of_noise() {
+        let (tables, mut uncertainty) = (observer(), Uncertainty::uninitialized());
+        let known = TorqueBias { variance: [0.0; 3], ..TorqueBias::new(&tables.contact) };
+        uncertainty.update_force_variances(&tables, &known, 0.0, 0.0);
+        // 1 N in a period; an interval has 10 periods.
+        let Uncertainty { mean_force_deviation, steady_force_deviation, .. } = uncertainty;
+        assert!((mean_force_deviation - 0.316).abs() < 1e-3, "{mean_force_deviation}");
+        assert!((steady_force_deviation - 0.112).abs() < 1e-3, "{steady_force_deviation}");
+    }
+}

@@ -130,3 +130,22 @@ fn age(now: u32, reading: &Reading) -> u32 {
 pub fn seconds<T: Real>(table: &ClockTable<T>, ticks: u32) -> T {
     T::from_i32(ticks as i32) * table.tick
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::observer;
+
+    #[test]
+    fn reading_is_lost_after_ten_periods() {
+        let tables = observer();
+        let sample_age = |periods: u32| {
+            let time = 100 * tables.clock.period;
+            let motor = Reading { counts: 0, time: time - periods * tables.clock.period };
+            let samples = Samples { time, motor, ..Samples::default() };
+            Sensors::new(true).step(&tables, &samples).motor_sample_age
+        };
+        assert_ne!(sample_age(10), SampleAge::Unusable);
+        assert_eq!(sample_age(11), SampleAge::Unusable);
+    }
+}

@@ -1,14 +1,14 @@
 //! Limits of the estimated parameters, and variances after a reset.
 
 use super::super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, PLAIN};
-use super::super::thresholds::LEAST_SQUARES;
 use super::{Innovation, LeastSquares};
-use crate::observer::test_tables::{DEVIATION, learner as table};
+use crate::observer::test_tables::{learner as table, observer};
 
 #[test]
 fn parameters_but_offset_are_limited() {
     let table = table();
-    let furthest = LEAST_SQUARES.max_deviation as f32 * DEVIATION;
+    // 16 initial deviations of 1e-3.
+    let furthest = 16e-3;
     for parameter in 0..PLAIN {
         let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
         least_squares.reset(&table);
@@ -129,4 +129,17 @@ fn innovation_is_compared_with_its_deviation() {
     assert!(innovation.is_within(5));
     assert!(!Innovation { value: -10.1, ..innovation }.is_within(5));
     assert!(!Innovation { value: f32::NAN, ..innovation }.is_within(5));
+}
+
+#[test]
+fn factor_of_1000_is_in_range() {
+    let tables = observer();
+    let is_in_range = |factor| {
+        let mut least_squares = LeastSquares::<f32, PLAIN>::UNINITIALIZED;
+        least_squares.reset(&tables.learner);
+        least_squares.factors[OFFSET][HALF_GAP] = factor;
+        least_squares.is_in_range(&tables)
+    };
+    assert!(is_in_range(999.0) && is_in_range(-999.0));
+    assert!(!is_in_range(1001.0) && !is_in_range(-1001.0) && !is_in_range(f32::NAN));
 }

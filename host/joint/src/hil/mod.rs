@@ -16,7 +16,7 @@ use scenario::suite;
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::keep_for_json(arguments.json.as_deref());
     Progress::during(|progress| {
-        if suite::holds_tests(arguments.file()) {
+        if suite::holds_tests(&arguments.tests()) {
             return scenario::run(&tests::test_request(arguments)?, progress);
         }
         tests::reject_test_arguments(arguments)?;

@@ -59,6 +59,17 @@ macro_rules! for_each_joint {
 }
 
 impl<'t> Plant<'t> {
+    /// Plant at rest; fails if the tables have no plant.
+    pub fn new(blob: &Blob<'t>) -> Result<Self, BlobError> {
+        let (gears, around) = blob.plant()?;
+        Ok(Self(match gears {
+            Gears::One(gears) => Joint::One(VirtualJoint::new(gears, around)),
+            Gears::Three(gears) => Joint::Three(VirtualJoint::new(gears, around)),
+            Gears::Four(gears) => Joint::Four(VirtualJoint::new(gears, around)),
+            Gears::Five(gears) => Joint::Five(VirtualJoint::new(gears, around)),
+        }))
+    }
+
     /// Builds a plant at rest in its final place; nothing is written if the tables have no plant.
     #[inline(never)]
     pub fn new_in(place: &mut MaybeUninit<Self>, blob: &Blob<'t>) -> Result<(), BlobError> {
@@ -87,6 +98,11 @@ impl<'t> Plant<'t> {
     #[inline(never)]
     pub fn advance(&mut self, command: f32, disturbance: f32) {
         for_each_joint!(&mut self.0, joint => joint.advance(command, disturbance));
+    }
+
+    /// Speeds of motor and link [rad/s].
+    pub fn speeds(&self) -> [f32; 2] {
+        for_each_joint!(&self.0, joint => [joint.motor_speed(), joint.link_speed()])
     }
 
     /// Present measurements.

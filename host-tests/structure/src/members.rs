@@ -145,10 +145,10 @@ impl Workspace {
         )
     }
 
-    /// Crates that depend on the command; even tests use the crates below it instead.
-    pub fn command_imports(&self, command: &str) -> Vec<String> {
+    /// Crates that depend on the command; even tests use the crates below it instead. `wheel` ships the command itself.
+    pub fn command_imports(&self, command: &str, wheel: &str) -> Vec<String> {
         let help = "move the needed code into a crate below the command";
-        self.forbidden(|_, _| true, |other| other.name == command, help)
+        self.forbidden(|member, kind| member.name != wheel || kind != Kind::Normal, |other| other.name == command, help)
     }
 
     /// Default members that are research or depend on research.

@@ -19,6 +19,7 @@ fn workspace(changed: Member) -> Workspace {
         member("reference", "host/reference", &[("parameters", Kind::Normal)]),
         member("joint", "host/joint", &[("model-core", Kind::Normal)]),
         member("host-tests", "host-tests", &[("reference", Kind::Normal), ("model-core", Kind::Normal)]),
+        member("wheel", "bindings/python", &[("joint", Kind::Normal)]),
         Member { default: false, ..member("paper", "research/paper", &[("reference", Kind::Normal)]) },
     ];
     let place = members.iter().position(|it| it.name == changed.name).expect("a member is changed");
@@ -30,7 +31,7 @@ fn all_rules(workspace: &Workspace) -> Vec<String> {
     let found = [
         workspace.independence("reference", "model-core"),
         workspace.shipped_imports(),
-        workspace.command_imports("joint"),
+        workspace.command_imports("joint", "wheel"),
         workspace.research_by_default(),
     ];
     found.concat()
@@ -49,6 +50,8 @@ fn forbidden_dependency_is_found() {
         (member("model-core", "model-core", &[("host-tests", Normal)]), "model-core/Cargo.toml: host-tests in [dep"),
         (member("model-core", "model-core", &[("paper", Build)]), "model-core/Cargo.toml: paper in [build-dep"),
         (member("host-tests", "host-tests", &[("joint", Tests)]), "host-tests/Cargo.toml: joint in [dev-dep"),
+        (member("reference", "host/reference", &[("joint", Normal)]), "reference/Cargo.toml: joint in [dep"),
+        (member("wheel", "bindings/python", &[("joint", Tests)]), "python/Cargo.toml: joint in [dev-dep"),
         (member("host-tests", "host-tests", &[("paper", Tests)]), "host-tests/Cargo.toml: paper in [dev-dep"),
         (member("paper", "research/paper", &[]), "paper is a default member"),
     ] {
@@ -68,6 +71,7 @@ const PAGE: &str = "# The house
 | `model-core` | Code of a board | `parameters`, `reference` (tests) | [`a.rs`](a.rs) |
 | `reference` | Independent model | `parameters` | `a.rs` |
 | `joint` | The command | `model-core` | `a.rs` |
+| `wheel` | The command once more | `joint` | `a.rs` |
 | `host-tests` | Tests | `reference`, `model-core` | `a.rs` |
 | `paper` | The study | `reference` | `a.rs` |
 
@@ -81,15 +85,15 @@ const PAGE: &str = "# The house
 fn page_must_agree_with_cargo() {
     let found = |page: &str, changed| page::differences(page, &workspace(changed), |path| path == Path::new("a.rs"));
     let core = |kind| member("model-core", "model-core", &[("parameters", Kind::Normal), ("reference", kind)]);
-    assert_eq!(page::rows(PAGE).len(), 6);
+    assert_eq!(page::rows(PAGE).len(), 7);
     assert_eq!(found(PAGE, core(Kind::Tests)), [""; 0]);
     assert!(found(PAGE, core(Kind::Normal))[0].contains("reference in [dependencies] is not allowed"));
     for (old, new, text) in [
         ("| `paper` | The study | `reference` | `a.rs` |\n", "", "no row for `paper`"),
-        ("| `paper`", "| `papers`", ":10: `papers` is no crate"),
-        ("`reference` | `a.rs` |\n\n", "`reference` | `b.rs` |\n\n", ":10: the file to open first, `b.rs`"),
+        ("| `paper`", "| `papers`", ":11: `papers` is no crate"),
+        ("`reference` | `a.rs` |\n\n", "`reference` | `b.rs` |\n\n", ":11: the file to open first, `b.rs`"),
         ("nothing of ours", "`scales`", ":5: `parameters` may import `scales`, which is no crate"),
-        ("| `paper`", "| `joint`", ":10: `joint` has a row already"),
+        ("| `paper`", "| `joint`", ":11: `joint` has a row already"),
     ] {
         let page = PAGE.replace(old, new);
         let found = found(&page, core(Kind::Tests));

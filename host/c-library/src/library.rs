@@ -12,7 +12,7 @@ use board::device::{Say, packages, tool};
 use clap::ValueEnum;
 use object::read::archive::ArchiveFile;
 use report::failure::{Failure, Outcome};
-use report::workspace::workspace;
+use report::workspace::{require_sources, workspace};
 
 /// Package of the library.
 const PACKAGE: &str = "c-bindings";
@@ -137,6 +137,7 @@ pub fn build(target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
 
 /// Builds the library in a folder; `None` is cargo's default one.
 pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
+    require_sources("the library for C")?;
     target.prepare(say)?;
     let (all, shared, compiler) = match target {
         Target::Host => {

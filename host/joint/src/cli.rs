@@ -1,5 +1,6 @@
 //! The command line: subcommands, their help, exit codes. Each subcommand has its own module.
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -69,10 +70,15 @@ enum Command {
 
 /// Parses the command line, runs the subcommand and turns the outcome into an exit code.
 pub fn main() -> ExitCode {
-    command_line::main(Cli::command(), Cli::from_arg_matches, run)
+    command_line::main(Cli::command(), Cli::from_arg_matches, run_subcommand)
 }
 
-fn run(cli: &Cli) -> Outcome<()> {
+/// Runs a command line that a caller gives, the program's name first; returns the exit code.
+pub fn run(arguments: &[OsString]) -> u8 {
+    command_line::run_with(arguments, Cli::command(), Cli::from_arg_matches, run_subcommand)
+}
+
+fn run_subcommand(cli: &Cli) -> Outcome<()> {
     packages::set_decision(cli.install);
     match &cli.command {
         None => show_help(),

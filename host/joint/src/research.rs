@@ -9,7 +9,7 @@ use board::device::tool;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;
-use report::workspace::workspace;
+use report::workspace::{require_sources, workspace};
 
 /// Arguments that are passed on to the program unchanged.
 #[derive(Debug, clap::Args)]
@@ -22,6 +22,7 @@ pub struct Arguments {
 
 /// Builds and runs a program of the folder `research`; ends with the program's exit code.
 pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
+    require_sources(&format!("the program `{package}`"))?;
     // Ctrl-C reaches the program as well, which ends in order; this process waits for it.
     interruption::watch()?;
     let _uninterrupted = interruption::UninterruptedWork::begin();

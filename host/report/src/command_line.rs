@@ -3,6 +3,7 @@
 
 use std::env;
 use std::error::Error;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, Command};
@@ -12,35 +13,52 @@ use crate::failure::{EXIT_BAD_INPUT, Outcome};
 use crate::interruption::UninterruptedWork;
 use crate::output;
 
-/// Parses the command line by `command`, runs the program and turns the outcome into an exit code; prints a failure.
+/// Parses the command line of this process by `command`, runs the program and turns the outcome into an exit code;
+/// prints a failure.
 pub fn main<T>(
     command: Command,
     read: impl Fn(&ArgMatches) -> Result<T, clap::Error>,
     run: impl FnOnce(&T) -> Outcome<()>,
 ) -> ExitCode {
+    ExitCode::from(run_with(&env::args_os().collect::<Vec<_>>(), command, read, run))
+}
+
+/// Runs a program as [`main`] does, with the command line of a caller; the first argument is the program's name. Returns
+/// the exit code.
+pub fn run_with<T>(
+    arguments: &[OsString],
+    command: Command,
+    read: impl Fn(&ArgMatches) -> Result<T, clap::Error>,
+    run: impl FnOnce(&T) -> Outcome<()>,
+) -> u8 {
     let mut command = with_negative_numbers(command);
-    let asked = match command.try_get_matches_from_mut(env::args_os()).and_then(|found| read(&found)) {
+    let asked = match command.try_get_matches_from_mut(arguments).and_then(|found| read(&found)) {
         Ok(asked) => asked,
         Err(error) => {
-            show(&error, &mut command, &read);
-            return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
+            show(&error, arguments, &mut command, &read);
+            return if error.use_stderr() { EXIT_BAD_INPUT } else { 0 };
         }
     };
     let outcome = run(&asked);
     let _uninterrupted = UninterruptedWork::begin();
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             failure.show();
-            ExitCode::from(failure.exit_code())
+            failure.exit_code()
         }
     }
 }
 
 /// Prints a clap error. clap styles its own words but prints arguments verbatim: for arguments with control characters,
 /// the error is created again from escaped arguments. A closed pipe is ignored.
-fn show<T>(error: &clap::Error, command: &mut Command, read: impl Fn(&ArgMatches) -> Result<T, clap::Error>) {
-    let arguments: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+fn show<T>(
+    error: &clap::Error,
+    arguments: &[OsString],
+    command: &mut Command,
+    read: impl Fn(&ArgMatches) -> Result<T, clap::Error>,
+) {
+    let arguments: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let all_plain = arguments.iter().all(|word| is_plain(word));
     let again = (!all_plain).then(|| {
         let escaped = arguments.iter().map(|word| escaped(word).into_owned());

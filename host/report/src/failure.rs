@@ -21,6 +21,19 @@ pub struct Failure {
     exit_code: u8,
 }
 
+/// Problem at a place of a source text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Line, from one.
+    pub line: usize,
+    /// Column, from one [letters].
+    pub column: usize,
+    /// Problem in one sentence.
+    pub message: String,
+    /// Remedy.
+    pub help: Option<String>,
+}
+
 /// Result whose error is shown to the user.
 pub type Outcome<T> = Result<T, Failure>;
 
@@ -77,6 +90,22 @@ impl Failure {
         let places = self.report.iter().flat_map(|report| report.related().into_iter().flatten());
         let of_places: Vec<String> = places.filter_map(|place| Some(place.help()?.to_string())).collect();
         self.help.clone().or_else(|| (!of_places.is_empty()).then(|| of_places.join("; ")))
+    }
+
+    /// Problems with their places in the source text; empty unless the failure has a drawn diagnostic.
+    pub fn places(&self) -> Vec<Place> {
+        let Some(report) = &self.report else { return Vec::new() };
+        let place = |problem: &dyn miette::Diagnostic| {
+            let label = problem.labels()?.next()?;
+            let found = report.source_code()?.read_span(label.inner(), 0, 0).ok()?;
+            Some(Place {
+                line: found.line() + 1,
+                column: found.column() + 1,
+                message: problem.to_string(),
+                help: problem.help().map(|help| help.to_string()),
+            })
+        };
+        report.related().into_iter().flatten().filter_map(place).collect()
     }
 
     /// Exit code of the process.

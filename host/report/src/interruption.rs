@@ -15,11 +15,25 @@ const EXIT_DELAY: Duration = Duration::from_millis(80);
 const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static LEFT_TO_HOST: AtomicBool = AtomicBool::new(false);
 static ORDERLY_TASKS: AtomicUsize = AtomicUsize::new(0);
 static WATCH: OnceLock<Result<(), String>> = OnceLock::new();
 
+/// Leaves the signals to the program that runs this code as a library; that program calls [`request`].
+pub fn leave_to_host() {
+    LEFT_TO_HOST.store(true, Ordering::SeqCst);
+}
+
+/// Asks the work of this process to stop, as a signal does; `false` withdraws the request for later work.
+pub fn request(stop: bool) {
+    INTERRUPTED.store(stop, Ordering::SeqCst);
+}
+
 /// Installs the signal handler, once for the process.
 pub fn watch() -> Outcome<()> {
+    if LEFT_TO_HOST.load(Ordering::SeqCst) {
+        return Ok(());
+    }
     let listen = || {
         ctrlc::set_handler(|| {
             if INTERRUPTED.swap(true, Ordering::SeqCst) {

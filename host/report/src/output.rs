@@ -31,9 +31,20 @@ pub fn keep_for_json(wanted: Option<&Path>) {
     }
 }
 
+/// True if results are not printed.
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Prints no results and remarks from now on: a library returns them.
+pub fn silence() {
+    SILENT.store(true, Ordering::Relaxed);
+}
+
 /// Prints a result on standard output, or on standard error if standard output is reserved for JSON. Failures are red
 /// on a terminal.
 pub fn print(text: &str) -> Outcome<()> {
+    if SILENT.load(Ordering::Relaxed) {
+        return Ok(());
+    }
     if FOR_JSON.load(Ordering::Relaxed) {
         let text = on(&io::stderr(), text);
         // A closed pipe is ignored.
@@ -110,6 +121,9 @@ pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read
 
 /// Prints a remark on standard error; a closed pipe is ignored.
 pub fn remark(text: &str) {
+    if SILENT.load(Ordering::Relaxed) {
+        return;
+    }
     let _ = writeln!(io::stderr().lock(), "{}", escaped(text));
 }
 

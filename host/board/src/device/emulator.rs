@@ -20,6 +20,7 @@ use tempfile::TempDir;
 
 use super::{Say, packages, tool};
 use report::failure::{Failure, Outcome};
+use report::workspace::require_sources;
 
 const PROGRAM: &str = "qemu-system-arm";
 /// Debian package of the emulator.
@@ -46,6 +47,7 @@ pub struct Emulator {
 
 /// Finds the emulator or installs it; returns its version line.
 pub fn ensure(say: Say<'_>) -> Outcome<String> {
+    require_sources("the emulated board's image")?;
     if tool::find(PROGRAM).is_none() {
         packages::ensure(&[PACKAGE], "to run the emulated board", say)?;
     }

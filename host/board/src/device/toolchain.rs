@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use report::workspace::workspace;
+use report::workspace::{require_sources, workspace};
 
 use super::cross_build::{TARGET, clear_host_settings};
 use super::{Say, packages, sysroot, tool};
@@ -38,6 +38,7 @@ pub struct Toolchain {
 impl Toolchain {
     /// Finds a toolchain or makes one. Installing packages and building a sysroot are announced.
     pub fn prepare(say: Say<'_>) -> Outcome<Self> {
+        require_sources("a firmware image")?;
         let target_directory = target_directory();
         match compiler_in_use(&target_directory) {
             Some(toolchain) => Ok(toolchain),

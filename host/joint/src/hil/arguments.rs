@@ -8,8 +8,11 @@ use board::profile::BUILTIN;
 use joint_run::plan::RunRequest;
 use live::PacedLiveOptions;
 use report::seeds::Seeds;
+use report::workspace::workspace;
 use scenario::plant::PlantName;
 
+/// Folder of the tests that come with the program, in the workspace and in an installed program's data.
+pub const TESTS: &str = "hil";
 /// Steps between two samples by default.
 const DECIMATION: u16 = 20;
 
@@ -21,6 +24,7 @@ const DECIMATION: u16 = 20;
   joint hil joints/l1.toml --duration 10      another joint, a longer run
   joint hil q1 --profile drive.csv --json out.json
   joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
+  joint hil --host                            all tests of observer and compensation around the f64 reference
   joint hil hil --host --plant reference      all tests of observer and compensation in the folder hil
   joint hil hil/t2.toml --host --seed 7       one of them, with another seed
   joint hil hil/t2.toml --host --live --live-speed 1   a page that shows it in real time
@@ -29,7 +33,7 @@ const DECIMATION: u16 = 20;
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed; or a test file, or a folder
-    /// of them (docs/reference/hil-file.md) [default: joint q1, then the short run of the tests in hil]
+    /// of them (docs/reference/hil-file.md) [default: joint q1, then the short run of the tests in hil; with --host the folder hil]
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
     /// Test files: runs observer and compensation on this machine, without a board
@@ -100,9 +104,15 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// File of the run; joint q1 if the command line names none.
+    /// File of the run; if the command line names none, the folder of tests with `--host`, else joint q1.
     pub fn file(&self) -> &Path {
-        self.file.as_deref().unwrap_or(Path::new("q1"))
+        self.file.as_deref().unwrap_or(Path::new(if self.host { TESTS } else { "q1" }))
+    }
+
+    /// Path of the tests: as typed, or among the tests that come with the program if nothing lies there.
+    pub fn tests(&self) -> PathBuf {
+        let typed = self.file();
+        if typed.starts_with(TESTS) && !typed.exists() { workspace().join(typed) } else { typed.to_owned() }
     }
 
     /// Step rate [Hz].
@@ -127,5 +137,33 @@ impl Arguments {
             json: self.json.as_deref(),
             picture: self.picture.as_deref(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    fn tests(words: &[&str]) -> PathBuf {
+        Line::parse_from([&["joint"], words].concat()).arguments.tests()
+    }
+
+    /// The tests of the program are found from any folder; a test runs in the folder of this crate, which has no `hil`.
+    #[test]
+    fn bundled_tests_found_from_any_folder() {
+        assert!(!Path::new(TESTS).exists());
+        assert_eq!(tests(&["hil/t2.toml", "--host"]), workspace().join("hil/t2.toml"));
+        assert_eq!(tests(&["--host"]), workspace().join("hil"));
+        assert_eq!(tests(&["other/t2.toml"]), Path::new("other/t2.toml"));
+        assert_eq!(tests(&["src/main.rs"]), Path::new("src/main.rs"));
+        assert_eq!(tests(&[]), Path::new("q1"));
     }
 }

@@ -18,7 +18,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     // Before any image is built.
     arguments.live.view.check()?;
     Progress::during(|progress| {
-        if suite::holds_tests(arguments.file()) {
+        if suite::holds_tests(&arguments.tests()) {
             return scenario::run(&tests::test_request(arguments)?, progress);
         }
         tests::reject_test_arguments(arguments)?;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use link::messages::Role;
 
-use super::arguments::Arguments;
+use super::arguments::{Arguments, TESTS};
 use board::line_options::RoleName;
 use report::failure::{Failure, Outcome};
 use report::input;
@@ -35,7 +35,7 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         return Err(Failure::new("--mode is for a whole loop on a board: all other tests run in lockstep")
             .with_help("leave it out, or run on a board with --role loop"));
     }
-    if arguments.full && arguments.seed.is_some() && !arguments.file().is_dir() {
+    if arguments.full && arguments.seed.is_some() && !arguments.tests().is_dir() {
         return Err(
             Failure::new("--full runs the full list of seeds, and --seed one seed").with_help("leave one of them out")
         );
@@ -51,10 +51,12 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         )
         .with_help("add --host or --role observer"));
     }
-    let path = arguments.file().to_owned();
+    let path = arguments.tests();
+    // The bounds of the tests that come with the program are stated around the reference.
+    let default_plant = if arguments.file.is_none() { PlantName::Reference } else { PlantName::Core };
     let group = TestGroup {
         choice: if arguments.full { Choice::Full } else { Choice::Short },
-        plant: arguments.plant.unwrap_or(PlantName::Core),
+        plant: arguments.plant.unwrap_or(default_plant),
         boards: (!arguments.host).then(|| board_request(arguments, role)),
         path,
     };
@@ -81,8 +83,8 @@ pub fn skipped_tests() -> Outcome<Vec<PathBuf>> {
 
 /// Folder of the tests that come with the program; the relative path `hil` if it leads to the same folder.
 fn folder() -> PathBuf {
-    let whole = workspace().join("hil");
-    let short = Path::new("hil");
+    let whole = workspace().join(TESTS);
+    let short = Path::new(TESTS);
     let same = short.canonicalize().is_ok_and(|short| whole.canonicalize().is_ok_and(|whole| short == whole));
     if same { short.to_owned() } else { whole }
 }
@@ -100,7 +102,7 @@ fn request_of_groups<'a>(
         save_memories: arguments.memory,
         name,
         out,
-        json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),
+        json: arguments.json.as_deref().filter(|_| arguments.file.is_some() || arguments.host),
         junit: arguments.junit.as_deref(),
         live: arguments.live.clone(),
     }

@@ -1,0 +1,153 @@
+//! The Python wheel, built as for a release, installed on a machine without Rust and driven by Python: the module, the
+//! command, the notebook, and the bits of the core. In release this test shares its build with the wheel.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use board::device::board::Board;
+use c_library::tables::{DEFAULT_REQUEST, make};
+use joint_file::named;
+use model_core::compensation::{Command as SetPoint, Compensation, Motion, Position};
+use model_core::gears::Tables;
+use model_core::numbers::digest::{START, chain};
+use model_core::observer::{MAPPED, Observer};
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+
+/// Version of maturin that the wheel is built with.
+const MATURIN: &str = "maturin==1.16.0";
+/// Packages of the tests, with pytest and what runs a notebook.
+const PACKAGES: [&str; 7] = ["numpy", "pytest", "pandas", "matplotlib", "nbclient", "ipykernel", "mypy"];
+/// Joints whose bits are compared: gears with planets, and an equivalent gear.
+const JOINTS: [&str; 4] = ["q1", "s1", "l1", "c1"];
+/// Periods of the comparison.
+const PERIODS: u32 = 20_000;
+/// Longest time to install the wheel and the packages that it depends on [s].
+const INSTALL_MAX: u64 = 60;
+
+fn bindings() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
+}
+
+fn succeeded(command: &mut Command) -> String {
+    let ended = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let printed = String::from_utf8_lossy(&[ended.stdout, ended.stderr].concat()).into_owned();
+    assert!(ended.status.success(), "{command:?}:\n{printed}");
+    printed
+}
+
+/// Python environment in a new folder, with packages.
+fn environment(place: &Path, packages: &[&str]) -> PathBuf {
+    succeeded(Command::new("python3").args(["-m", "venv", "--clear"]).arg(place));
+    let python = place.join("bin/python");
+    if !packages.is_empty() {
+        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        succeeded(Command::new(&python).args(pip).args(packages));
+    }
+    python
+}
+
+/// Torque command and load of a period [N m].
+fn torques(period: u32) -> (f32, f32) {
+    let sign = |half: u32| if (period / half).is_multiple_of(2) { 1.0 } else { -1.0 };
+    (0.25 * sign(700), sign(1100))
+}
+
+/// Digest of a plant under the torques, and torques of the compensation that holds the joint under the loads.
+fn bits<const N: usize>(
+    gears: &Tables<f32, N>,
+    around: &SurroundingsTable<f32>,
+    blob: &table_blob::Blob<'_>,
+) -> (u64, u64) {
+    let mut plant = VirtualJoint::new(gears, around);
+    for period in 0..PERIODS {
+        let (torque, load) = torques(period);
+        plant.advance(torque, load);
+    }
+    let digest = plant.model().state_digest();
+    let mut plant = VirtualJoint::new(gears, around);
+    let mut observer = Observer::<f32, MAPPED>::new(blob.observer().expect("a part"));
+    let mut compensation = Compensation::new(blob.compensation().expect("a part"));
+    let mut running = START;
+    for period in 0..PERIODS {
+        let now = Motion { position: Position { turns: 0, fraction: 0.0 }, speed: 0.0, acceleration: 0.0 };
+        let command = SetPoint::Position { now, ahead: Some(now) };
+        let done = compensation.step(observer.step(&plant.samples()), &command);
+        plant.advance(done.torque, torques(period).1);
+        running = chain(running, done.torque.to_bits().into());
+    }
+    (digest, running)
+}
+
+/// Expected bits of the joints as JSON.
+fn expected_bits() -> String {
+    let lines = JOINTS.map(|name| {
+        let joint = named::load(Path::new(name)).expect("a preset").file;
+        let tables = make(&joint, &joint, DEFAULT_REQUEST, true, &Board::emulated()).expect("tables");
+        let blob = table_blob::Blob::open(&tables.words).expect("tables");
+        let (gears, around) = blob.plant().expect("a plant");
+        let (plant, controller) = match gears {
+            table_blob::Gears::One(gears) => bits(gears, around, &blob),
+            table_blob::Gears::Three(gears) => bits(gears, around, &blob),
+            table_blob::Gears::Four(gears) => bits(gears, around, &blob),
+            table_blob::Gears::Five(gears) => bits(gears, around, &blob),
+        };
+        let tables = tables.digest();
+        format!("\"{name}\": {{\"plant\": {plant}, \"controller\": {controller}, \"tables\": {tables}}}")
+    });
+    format!("{{\"periods\": {PERIODS}, \"joints\": {{{}}}}}", lines.join(", "))
+}
+
+/// Search path of the user: a folder that does not exist, so that neither cargo nor a compiler is found.
+const PATH_WITHOUT_RUST: &str = "/none";
+
+/// The wheel installs within a minute and does in a folder without sources what its tests say.
+#[test]
+#[ignore = "builds and installs the wheel: cargo test --release -p python-bindings -- --ignored --nocapture"]
+fn wheel_passes_its_tests_without_rust() {
+    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wheel");
+    fs::create_dir_all(&place).expect("the build directory is writable");
+    let bits = place.join("bits.json");
+    fs::write(&bits, expected_bits()).expect("a file");
+    let wheels = place.join("wheels");
+    let _ = fs::remove_dir_all(&wheels);
+    let tools = environment(&place.join("tools"), &[MATURIN, "auditwheel"]);
+    let begin = Instant::now();
+    let build = ["-m", "maturin", "build", "--release", "--locked", "--out"];
+    println!("{}", succeeded(Command::new(&tools).args(build).arg(&wheels).current_dir(bindings())));
+    println!("build: {:.0} s", begin.elapsed().as_secs_f64());
+    let wheel = fs::read_dir(&wheels).expect("a folder").next().expect("a wheel").expect("a file").path();
+    let size = wheel.metadata().expect("a file").len();
+    let name = wheel.file_name().expect("a name").to_string_lossy().into_owned();
+    println!("{name}: {size} B");
+    assert!(name.contains("-cp310-abi3-manylinux"), "{name}");
+    println!("{}", succeeded(Command::new(&tools).args(["-m", "auditwheel", "show"]).arg(&wheel)));
+
+    let python = environment(&place.join("user"), &[]);
+    let begin = Instant::now();
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    succeeded(Command::new(&python).args(install).arg(&wheel).env("PATH", PATH_WITHOUT_RUST));
+    println!("install: {:.1} s", begin.elapsed().as_secs_f64());
+    assert!(begin.elapsed().as_secs() < INSTALL_MAX);
+    succeeded(Command::new(&python).args(install).args(PACKAGES));
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let tests = folder.path().join("tests");
+    for kind in ["tests", "notebooks"] {
+        let copy = folder.path().join(kind);
+        succeeded(Command::new("cp").arg("-r").arg(bindings().join(kind)).arg(copy));
+    }
+    let run = Command::new(&python)
+        .args(["-m", "pytest", "-q", "-s", "--durations=5", "-p", "no:cacheprovider"])
+        .arg(&tests)
+        .current_dir(folder.path())
+        .env("PATH", PATH_WITHOUT_RUST)
+        .env("LOSTMOTION_BITS", &bits)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .expect("an interpreter");
+    let printed = String::from_utf8_lossy(&[run.stdout, run.stderr].concat()).into_owned();
+    println!("{printed}");
+    assert!(run.status.success(), "{printed}");
+}

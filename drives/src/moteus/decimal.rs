@@ -248,7 +248,7 @@ fn shortest(number: f32) -> Digits {
     let whole = if biased == 0 { fraction } else { fraction | 1 << 23 };
     let scaled = Scaled::new(whole.into(), biased.max(1) - 150, false);
     // Floor of the decimal logarithm, or one more or less.
-    let exponent = (scaled.exponent + BITS as i32 - 1) * 1233 >> 12;
+    let exponent = ((scaled.exponent + BITS as i32 - 1) * 1233) >> 12;
     let lead = ENOUGH_DIGITS as i32 + 2;
     let decimal = scaled.times_power_of_ten(lead - exponent).whole();
     let (digits, first) = split(decimal);
@@ -281,7 +281,7 @@ fn round(digits: &[u8; 16], first: usize, count: usize, exponent: i32) -> Digits
     let mut rounded = [b'0'; ENOUGH_DIGITS];
     let kept = digits.iter().skip(first).take(count);
     rounded.iter_mut().zip(kept).for_each(|(place, digit)| *place = b'0' + digit);
-    let mut carries = digits.iter().nth(first + count).is_some_and(|next| *next >= 5);
+    let mut carries = digits.get(first + count).is_some_and(|next| *next >= 5);
     for digit in rounded.iter_mut().take(count).rev() {
         if !carries {
             break;

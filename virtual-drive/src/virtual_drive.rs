@@ -49,7 +49,17 @@ impl<'t, M: Maker, const N: usize> VirtualDrive<'t, M, N> {
 
     /// Runs one control period of joint, drive and supply, then sends the server's cyclic frames.
     pub fn step(&mut self, send: Send<'_>) {
+        self.advance();
+        self.send_cyclic(send);
+    }
+
+    /// First part of [`step`](Self::step): joint, drive and supply.
+    pub fn advance(&mut self) {
         step(&mut self.joint, &mut self.drive, &mut self.power);
+    }
+
+    /// Second part of [`step`](Self::step): the server's cyclic frames.
+    pub fn send_cyclic(&mut self, send: Send<'_>) {
         self.server.tick(&mut self.drive, send);
     }
 

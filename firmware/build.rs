@@ -14,6 +14,7 @@ use std::{env, fs};
 
 use board_file::{Board, Chip};
 use model_core::controller::design::{ControlRequest, NominalPlant, control_source};
+use virtual_drive::maker::{NAMES, Name};
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
 
@@ -63,7 +64,7 @@ fn board() -> Result<Board, String> {
     if board.spi_slave.is_some() {
         println!("cargo::rustc-cfg=has_spi_slave");
     }
-    if board.can.is_some() && chip.has_can() {
+    if board.can_line().is_ok() {
         println!("cargo::rustc-cfg=has_can");
     }
     Ok(board)
@@ -135,12 +136,13 @@ fn write_drive(board: &Board) -> Result<(), String> {
     let Some(maker) = variable("JOINT_DRIVE").filter(|typed| !typed.is_empty()) else {
         return write("drive.rs", "compile_error!(\"JOINT_DRIVE names no drive\");\n");
     };
-    let maker = virtual_drive::maker::NAMES.into_iter().find(|name| name.word == maker).ok_or_else(|| {
-        format!("JOINT_DRIVE={maker}: want one of {:?}", virtual_drive::maker::NAMES.map(|it| it.word))
-    })?;
-    let can = board.can.as_ref().ok_or("the board's file has no [can]")?;
-    if maker.is_flexible && !can.is_flexible() {
-        return Err(format!("JOINT_DRIVE={}: its frames are CAN FD, and {} is classical CAN", maker.word, can.unit));
+    let maker = Name::from_word(&maker)
+        .ok_or_else(|| format!("JOINT_DRIVE={maker}: want one of {:?}", NAMES.map(|name| name.word)))?;
+    let can =
+        board.can_line().map_err(|why| format!("JOINT_DRIVE={}: {} is no drive: {why}", maker.word, board.name))?;
+    if maker.is_flexible && can.data_bitrate.is_none() {
+        let why = "its frames are CAN FD, and the board file has no `data_bitrate` in [can]";
+        return Err(format!("JOINT_DRIVE={}: {why}", maker.word));
     }
     let id = number("JOINT_DRIVE_ID", "the bus")?.unwrap_or(1.0);
     if !(1.0..=f64::from(maker.max_id)).contains(&id) || id.fract() != 0.0 {

@@ -57,10 +57,12 @@ pub struct CanBus {
     pub to_board: VecDeque<Frame>,
     /// Frames that the other node received.
     pub to_others: Vec<Frame>,
-    /// Frames that the core took from the peripheral, and frames that it handed over.
+    /// Frames that the core took from the peripheral.
     pub taken: Vec<Logged>,
     /// Frames that the core handed to the peripheral.
     pub handed: Vec<Logged>,
+    /// Changes that the core read of whether its peripheral is off the bus, each with the number of ticks that had begun.
+    pub seen_off: Vec<(u32, bool)>,
     /// Ticks of the core that have begun.
     pub ticks: u32,
     /// True if the other node acknowledges the board's frames.
@@ -85,6 +87,7 @@ impl CanBus {
             to_others: Vec::new(),
             taken: Vec::new(),
             handed: Vec::new(),
+            seen_off: Vec::new(),
             ticks: 0,
             acknowledges: true,
             destroys: 0,
@@ -144,8 +147,15 @@ impl CanBus {
         }
     }
 
-    /// Ends the other node's frame: the board has received it, or it is sent again.
-    pub fn is_received(&mut self, by_board: bool) {
+    /// Logs that the core has read whether its peripheral is off the bus.
+    pub fn note_seen_off(&mut self, is_off: bool) {
+        if is_off != self.seen_off.last().is_some_and(|(_, last)| *last) {
+            self.seen_off.push((self.ticks, is_off));
+        }
+    }
+
+    /// Ends the other node's frame: if the board has not received it, the other node sends it again.
+    pub fn end_reception(&mut self, by_board: bool) {
         if by_board {
             self.to_board.pop_front();
         }

@@ -1,15 +1,13 @@
 //! Twin of an image in role `drive`: the frames that the core took, in the ticks in which it took them, through the same
 //! joint, drive and server on this host. Every frame of the image has to be the twin's, in order.
 
-use drives::bus::CanServer;
-use drives::drive::VirtualPower;
-use drives::{Drive, Frame};
+use drives::Frame;
 use joint_file::JointFile;
 use model_core::gears::design::Processor;
 use virtual_drive::maker::{self, Maker};
-use virtual_drive::{DriveDesign, joint_tables};
+use virtual_drive::{DriveDesign, VirtualDrive, joint_tables};
 
-use crate::can_bus::Logged;
+use crate::can_bus::{CanBus, Logged};
 
 /// Drive of an image.
 #[derive(Debug, Clone, Copy)]
@@ -25,54 +23,57 @@ pub struct DriveOf<'j> {
 }
 
 impl DriveOf<'_> {
-    /// Frames that the drive sends within a number of ticks, if it receives some frames, each before the tick after
-    /// those that had begun.
-    pub fn frames(&self, received: &[Logged], ticks: u32) -> Result<Vec<Frame>, String> {
+    /// Frames that the drive sends in the ticks of a bus, if it receives the frames that the core took, and reads the
+    /// changes of bus-off that the core read, in the ticks of the core.
+    pub fn frames(&self, bus: &CanBus) -> Result<Vec<Frame>, String> {
         match self.maker {
-            "moteus" => self.of_maker::<maker::Moteus>(received, ticks),
-            "odrive" => self.of_maker::<maker::Odrive>(received, ticks),
-            "odrive3" => self.of_maker::<maker::Odrive3>(received, ticks),
-            "damiao" => self.of_maker::<maker::Damiao>(received, ticks),
-            "cybergear" => self.of_maker::<maker::Cybergear>(received, ticks),
-            "robstride" => self.of_maker::<maker::Robstride>(received, ticks),
-            "cia402" => self.of_maker::<maker::Cia402>(received, ticks),
+            "moteus" => self.of_maker::<maker::Moteus>(bus),
+            "odrive" => self.of_maker::<maker::Odrive>(bus),
+            "odrive3" => self.of_maker::<maker::Odrive3>(bus),
+            "damiao" => self.of_maker::<maker::Damiao>(bus),
+            "cybergear" => self.of_maker::<maker::Cybergear>(bus),
+            "robstride" => self.of_maker::<maker::Robstride>(bus),
+            "cia402" => self.of_maker::<maker::Cia402>(bus),
             other => Err(format!("no maker is called {other}")),
         }
     }
 
-    fn of_maker<M: Maker>(&self, received: &[Logged], ticks: u32) -> Result<Vec<Frame>, String> {
+    fn of_maker<M: Maker>(&self, bus: &CanBus) -> Result<Vec<Frame>, String> {
         match self.joint.parameters.geometry.planets {
-            1 => self.run::<M, 1>(received, ticks),
-            3 => self.run::<M, 3>(received, ticks),
-            4 => self.run::<M, 4>(received, ticks),
-            _ => self.run::<M, 5>(received, ticks),
+            1 => self.run::<M, 1>(bus),
+            3 => self.run::<M, 3>(bus),
+            4 => self.run::<M, 4>(bus),
+            _ => self.run::<M, 5>(bus),
         }
     }
 
-    fn run<M: Maker, const N: usize>(&self, received: &[Logged], ticks: u32) -> Result<Vec<Frame>, String> {
+    fn run<M: Maker, const N: usize>(&self, bus: &CanBus) -> Result<Vec<Frame>, String> {
         let JointFile { parameters, surroundings, .. } = self.joint;
         let bandwidth = model_core::compensation::design::good_bandwidth(parameters, surroundings)
             .map_err(|error| error.to_string())?;
-        let numbers = DriveDesign::new(parameters, surroundings, bandwidth, true);
-        let settings = M::settings(numbers.settings(M::PEAK_CURRENT, M::SUPPLY, true));
+        let design = DriveDesign::new(parameters, surroundings, bandwidth, true);
         let tables = joint_tables::<N>(parameters, surroundings, &self.processor).map_err(|error| error.to_string())?;
-        let (mut joint, mut drive) = (tables.joint(), Drive::new(settings));
-        let (mut server, mut power) = (M::server(self.id, &settings), VirtualPower::new(M::SUPPLY));
+        let mut drive = VirtualDrive::<M, N>::new(tables.joint(), &design, self.id);
         let mut sent = Vec::new();
-        let mut waiting = received.iter().peekable();
-        for begun in 0..ticks {
-            while let Some((_, frame)) = waiting.next_if(|(tick, _)| *tick <= begun) {
-                server.receive(frame, &mut drive, &mut |frame| sent.push(frame));
+        let (mut waiting, mut changes) = (bus.taken.iter().peekable(), bus.seen_off.iter().peekable());
+        let mut is_off = false;
+        for begun in 0..bus.ticks {
+            // The core reads the state of the bus in the tick that has begun, and takes frames before it begins.
+            while let Some((_, now)) = changes.next_if(|(tick, _)| *tick <= begun + 1) {
+                is_off = *now;
             }
-            virtual_drive::step(&mut joint, &mut drive, &mut power);
-            server.tick(&mut drive, &mut |frame| sent.push(frame));
+            drive.note_bus_state(is_off, &mut |frame| sent.push(frame));
+            while let Some((_, frame)) = waiting.next_if(|(tick, _)| *tick <= begun) {
+                drive.receive(frame, &mut |frame| sent.push(frame));
+            }
+            drive.step(&mut |frame| sent.push(frame));
         }
         Ok(sent)
     }
 
     /// Compares the frames of an image with the twin's; returns their number. The image's last frames may wait still.
-    pub fn compare(&self, handed: &[Logged], received: &[Logged], ticks: u32) -> Result<usize, String> {
-        let expected = self.frames(received, ticks)?;
+    pub fn compare(&self, bus: &CanBus) -> Result<usize, String> {
+        let (handed, expected) = (&bus.handed, self.frames(bus)?);
         let wrong = handed.iter().zip(&expected).position(|((_, own), twin)| own != twin);
         if let Some(place) = wrong {
             let (tick, own) = &handed[place];

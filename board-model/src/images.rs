@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 
 use board::device::board::Board;
-use board::device::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, DriveOnBus, SPI_RATE, default_drive_rate};
+use board::device::image::{
+    self, CONTROL_RATE, DEFAULT_TICK_RATE, DriveOnBus, SPI_RATE, default_drive_rate, usual_maker,
+};
 use board::device::tick_time;
 use board::device::toolchain::Toolchain;
 use link::messages::Role;
 use parameters::JointParameters;
-use virtual_drive::maker::{MOTEUS, ODRIVE3};
+use virtual_drive::maker::Name;
 
 use crate::image::Image;
 
@@ -28,6 +30,8 @@ pub enum Work {
     SpiSlave,
     /// Drive on CAN.
     Drive,
+    /// Drive on CANopen.
+    Canopen,
 }
 
 impl Work {
@@ -39,6 +43,7 @@ impl Work {
             Self::Loop => "loop",
             Self::SpiSlave => "slave on SPI",
             Self::Drive => "drive on CAN",
+            Self::Canopen => "drive on CANopen",
         }
     }
 }
@@ -51,9 +56,12 @@ fn parameters() -> Result<JointParameters, String> {
 
 /// Drive that the image of a board is: that of a board with CAN FD is a moteus, that of another one an ODrive 3.6.
 pub fn drive_of(board: &Board) -> Option<DriveOnBus> {
-    let can = board.description.can?;
-    let maker = if can.data_bitrate.is_some() { MOTEUS } else { ODRIVE3 };
-    Some(DriveOnBus { maker, id: 1 })
+    board.description.can_line().ok().map(|can| DriveOnBus { maker: usual_maker(can), id: 1 })
+}
+
+/// Drive that the CANopen image of a board is.
+pub fn canopen_drive(board: &Board) -> Option<DriveOnBus> {
+    board.description.can_line().ok().and_then(|_| Some(DriveOnBus { maker: Name::from_word("cia402")?, id: 1 }))
 }
 
 /// Images by board and kind.
@@ -81,8 +89,9 @@ impl Images {
             Work::Observer => role(Role::Observer, CONTROL_RATE),
             // The highest common rate that fits the chip.
             Work::Loop => role(Role::Loop, tick_time::default_control_rate(&parameters()?, board, Role::Loop)),
-            Work::Drive => {
-                let drive = drive_of(board).ok_or("the board is no drive")?;
+            Work::Drive | Work::Canopen => {
+                let drive = if work == Work::Drive { drive_of(board) } else { canopen_drive(board) };
+                let drive = drive.ok_or("the board is no drive")?;
                 image::build_drive(
                     &self.toolchain,
                     &joint,

@@ -130,7 +130,7 @@ fn compare(board: &board_model::cpu::Board<'_>, described: &Board, twin: &Twin) 
     let processor = described.processor();
     let drive = DriveOf { maker: &twin.maker, id: twin.id, joint, processor };
     let bus = &board.machine().wires.can;
-    let count = drive.compare(&bus.handed, &bus.taken, bus.ticks)?;
+    let count = drive.compare(bus)?;
     let (taken, ticks, lost) = (bus.taken.len(), bus.ticks, bus.overruns);
     println!("ok       {taken} frames to the image in {ticks} ticks, {lost} lost; its {count} frames are the twin's");
     Ok(())

@@ -1,15 +1,20 @@
-//! CAN line of the role `drive`: the interrupt moves received frames into a queue, and the tick takes them out, sends
-//! and watches for bus-off. The drivers of the chips are in `board`.
+//! CAN line of the role `drive`: the receive interrupt moves frames into a queue, and the tick takes them out and sends.
+//! The drivers of the chips are in `board`.
 //!
-//! The queue cannot overflow while ticks occur: at 1 Mbit/s a frame takes at least 47 us, with data at 8 Mbit/s at least
-//! 30 us, so that at most seven arrive in a tick of 200 us, and [`FRAMES`] fit. A stop is heard in the tick after its
-//! last bit.
+//! The receive interrupt preempts the tick, since the FIFO of three frames would overflow in a tick of more than 100 us:
+//! a frame of 11 bits without data takes 47 us at 1 Mbit/s. The timer's interrupt has the priority of the receive
+//! interrupt and calls [`Receiving::begin_period`]: frames that arrive later, even before the tick's first instruction,
+//! are left to the next tick. Each frame is thus handled in a definite period, as in the twin.
+//!
+//! At control rates of 5 kHz and above the queue of [`FRAMES`] cannot overflow while ticks occur: a frame takes 47 us at
+//! 1 Mbit/s at least, 30 us with data at 8 Mbit/s, so that at most 14 arrive in two periods of 200 us.
+
+use core::sync::atomic::Ordering::Relaxed;
 
 use drives::Frame;
 
 use crate::shared::{AtomicU32, Consumer, Producer, Queue};
 use crate::sized_queue::{SizedConsumer, SizedProducer};
-use core::sync::atomic::Ordering::Relaxed;
 
 /// Places of the queue; one stays empty.
 const PLACES: usize = 16;
@@ -20,10 +25,10 @@ const FIFO: usize = 3;
 
 /// Receiving half of a CAN peripheral.
 pub trait CanReceiver {
+    /// Clears the interrupt request; a frame that arrives afterwards raises it again.
+    fn acknowledge(&mut self);
     /// Takes the oldest frame of the FIFO.
     fn receive(&mut self) -> Option<Frame>;
-    /// Returns `true` if a frame was lost since the last call because the FIFO was full.
-    fn overran(&mut self) -> bool;
 }
 
 /// Sending half of a CAN peripheral.
@@ -31,14 +36,15 @@ pub trait CanSender {
     /// Hands a frame over for sending, behind the frames before it; `false` if there is no room. A frame that the
     /// peripheral cannot send is dropped.
     fn send(&mut self, frame: &Frame) -> bool;
-    /// Begins the recovery from bus-off, if the peripheral does not by itself. To be called once a tick.
-    fn recover(&mut self);
+    /// Returns whether the peripheral is off the bus after too many errors. To be called once a tick: begins the
+    /// recovery if the peripheral does not by itself.
+    fn is_off(&mut self) -> bool;
 }
 
 /// Frames between interrupt and tick.
 pub struct Received {
     queue: Queue<Frame, PLACES>,
-    lost: AtomicU32,
+    due: AtomicU32,
 }
 
 impl Default for Received {
@@ -50,59 +56,65 @@ impl Default for Received {
 impl Received {
     /// Empty queue.
     pub const fn new() -> Self {
-        Self { queue: Queue::new(), lost: AtomicU32::new(0) }
+        Self { queue: Queue::new(), due: AtomicU32::new(0) }
     }
 
-    /// Ends of the interrupt and of the tick.
+    /// Ends of the interrupts and of the tick.
     pub fn split<R: CanReceiver>(&mut self, receiver: R) -> (Receiving<'_, R>, Inbox<'_>) {
-        let Self { queue, lost } = self;
+        let Self { queue, due } = self;
         let (producer, consumer): (Producer<'_, _>, Consumer<'_, _>) = queue.split();
-        let receiving = Receiving { receiver, frames: SizedProducer::new(producer), lost };
-        (receiving, Inbox { frames: SizedConsumer::new(consumer), lost })
+        let receiving = Receiving { receiver, frames: SizedProducer::new(producer), count: 0, due };
+        (receiving, Inbox { frames: SizedConsumer::new(consumer), count: 0, due })
     }
 }
 
-/// Work of the interrupt.
+/// Work of the interrupts of receiver and timer.
 pub struct Receiving<'a, R> {
     receiver: R,
     frames: SizedProducer<'a, Frame, PLACES>,
-    lost: &'a AtomicU32,
+    /// Frames put into the queue since power-up; wraps.
+    count: u32,
+    due: &'a AtomicU32,
 }
 
 impl<R: CanReceiver> Receiving<'_, R> {
-    /// Moves the frames of the FIFO into the queue. A frame that arrives meanwhile raises the interrupt again.
+    /// Moves the frames of the FIFO into the queue. A frame is lost if the queue is full.
     pub fn service(&mut self) {
+        self.receiver.acknowledge();
         for _ in 0..FIFO {
             let Some(frame) = self.receiver.receive() else { break };
-            if self.frames.enqueue(frame).is_err() {
-                self.count_loss();
+            if self.frames.enqueue(frame).is_ok() {
+                self.count = self.count.wrapping_add(1);
             }
-        }
-        if self.receiver.overran() {
-            self.count_loss();
         }
     }
 
-    fn count_loss(&self) {
-        self.lost.store(self.lost.load(Relaxed).wrapping_add(1), Relaxed);
+    /// Begins a period: its tick handles the frames that are in the queue now.
+    pub fn begin_period(&mut self) {
+        self.due.store(self.count, Relaxed);
     }
 }
 
 /// Frames that the tick takes.
 pub struct Inbox<'a> {
     frames: SizedConsumer<'a, Frame, PLACES>,
-    lost: &'a AtomicU32,
+    /// Frames taken since power-up; wraps.
+    count: u32,
+    due: &'a AtomicU32,
 }
 
 impl Inbox<'_> {
+    /// Returns the number of frames that arrived before this period and were not taken.
+    #[inline]
+    pub fn count(&self) -> usize {
+        (self.due.load(Relaxed).wrapping_sub(self.count) as usize).min(FRAMES)
+    }
+
     /// Takes the oldest frame.
     #[inline]
     pub fn take(&mut self) -> Option<Frame> {
-        self.frames.take()
-    }
-
-    /// Number of losses since power-up, each of one frame or more; wraps.
-    pub fn lost(&self) -> u32 {
-        self.lost.load(Relaxed)
+        let frame = self.frames.take()?;
+        self.count = self.count.wrapping_add(1);
+        Some(frame)
     }
 }

@@ -4,13 +4,12 @@
 //! The drive runs from power-up on and has the maker's own states: without a client it is disabled. It never touches
 //! the enable output of the board, since its motor is simulated.
 
-use drives::bus::CanServer;
-use drives::drive::{Fault, VirtualPower};
 use drives::{Drive, Frame};
 use heapless::Deque;
-use model_core::virtual_joint::VirtualJoint;
+use virtual_drive::VirtualDrive;
+use virtual_drive::maker::Maker;
 
-use crate::can::{CanSender, FRAMES, Inbox};
+use crate::can::{CanSender, Inbox};
 
 /// Frames that wait for the bus. CANopen has the longest burst: 4 process data, heartbeat, emergency and an answer for
 /// each received frame.
@@ -19,11 +18,8 @@ const OUTBOX: usize = 32;
 const MAILBOXES: usize = 3;
 
 /// Work of the tick.
-pub struct DriveTick<'a, S, C, const N: usize> {
-    joint: VirtualJoint<'a, f32, N>,
-    drive: Drive,
-    server: S,
-    power: VirtualPower,
+pub struct DriveTick<'a, M: Maker, C, const N: usize> {
+    drive: VirtualDrive<'a, M, N>,
     bus: C,
     inbox: Inbox<'a>,
     outbox: Outbox,
@@ -31,64 +27,56 @@ pub struct DriveTick<'a, S, C, const N: usize> {
 
 /// Frames that wait for the bus, the oldest first.
 #[derive(Default)]
-struct Outbox {
-    frames: Deque<Frame, OUTBOX>,
-    lost: u32,
-}
+struct Outbox(Deque<Frame, OUTBOX>);
 
 impl Outbox {
     /// Adds a frame. Without room the frame is lost: other nodes hold the bus, or nobody acknowledges.
     fn push(&mut self, frame: Frame) {
-        if self.frames.push_back(frame).is_err() {
-            self.lost = self.lost.wrapping_add(1);
-        }
+        let _ = self.0.push_back(frame);
     }
 }
 
-impl<'a, S: CanServer, C: CanSender, const N: usize> DriveTick<'a, S, C, N> {
-    /// Joint at rest behind a disabled drive.
-    pub fn new(
-        joint: VirtualJoint<'a, f32, N>,
-        drive: Drive,
-        server: S,
-        power: VirtualPower,
-        bus: C,
-        inbox: Inbox<'a>,
-    ) -> Self {
-        Self { joint, drive, server, power, bus, inbox, outbox: Outbox::default() }
+impl<'a, M: Maker, C: CanSender, const N: usize> DriveTick<'a, M, C, N> {
+    /// Tick of a drive on a bus.
+    pub fn new(drive: VirtualDrive<'a, M, N>, bus: C, inbox: Inbox<'a>) -> Self {
+        Self { drive, bus, inbox, outbox: Outbox::default() }
     }
 
-    /// Runs one control period: frames that arrived, joint and drive, cyclic frames, sending.
+    /// Runs one control period: state of the bus, frames that arrived, joint and drive, cyclic frames, sending. The parts
+    /// are not inlined: each needs much stack, but not at the same time.
     pub fn tick(&mut self) {
-        let Self { joint, drive, server, power, bus, inbox, outbox } = self;
-        for _ in 0..FRAMES {
+        self.serve();
+        self.drive.advance();
+        self.send();
+    }
+
+    /// Tells the server about the bus, and hands it the frames that arrived.
+    #[inline(never)]
+    fn serve(&mut self) {
+        let Self { drive, bus, inbox, outbox } = self;
+        drive.note_bus_state(bus.is_off(), &mut |frame| outbox.push(frame));
+        for _ in 0..inbox.count() {
             let Some(frame) = inbox.take() else { break };
-            server.receive(&frame, drive, &mut |answer| outbox.push(answer));
+            drive.receive(&frame, &mut |answer| outbox.push(answer));
         }
-        virtual_drive::step(joint, drive, power);
-        if !joint.model().is_finite() {
-            // The joint begins anew at rest, and the drive has lost its encoders.
-            joint.reset();
-            drive.declare(Fault::MotorEncoder);
-        }
-        server.tick(drive, &mut |frame| outbox.push(frame));
-        bus.recover();
+    }
+
+    /// Makes the cyclic frames, and hands the oldest frames to the peripheral.
+    #[inline(never)]
+    fn send(&mut self) {
+        let Self { drive, bus, outbox, .. } = self;
+        drive.send_cyclic(&mut |frame| outbox.push(frame));
         for _ in 0..MAILBOXES {
-            let Some(frame) = outbox.frames.front() else { break };
+            let Some(frame) = outbox.0.front() else { break };
             if !bus.send(frame) {
                 break;
             }
-            outbox.frames.pop_front();
+            outbox.0.pop_front();
         }
     }
 
     /// Drive.
     pub fn drive(&self) -> &Drive {
-        &self.drive
-    }
-
-    /// Frames that were received but lost, and frames that could not be sent, since power-up; wrapping.
-    pub fn losses(&self) -> (u32, u32) {
-        (self.inbox.lost(), self.outbox.lost)
+        self.drive.drive()
     }
 }

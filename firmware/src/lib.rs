@@ -7,10 +7,11 @@
 //! are `plant`, `observer` and `whole_loop`; `protocol` defines the messages of a role. `queues` connects the tick with
 //! idle; `sized_queue` makes queue accesses of the tick free of panics. `conversation` runs in idle and answers the
 //! host with the help of `identity`, `intake`, `memory_requests`, `batcher`, `telemetry` and `timing_report`; `serial`
-//! moves the bytes. Role `drive` has neither host nor protocol of its own: `drive` is its tick, `can` its line. `port` is the interface between a motor controller and observer with compensation, `encoder` reads
-//! the counts, `learnt` holds the estimated parameters between runs, `kept_memory` stores them in flash. All of these
-//! are independent of the hardware and tested on the host. `board`, `clock`, `logger`, `panic_message` and `stack`
-//! exist on a board only, `measuring` in the emulator only. The physics is in `model-core`, the messages are in `link`.
+//! moves the bytes. Role `drive` has neither host nor protocol of its own: `drive` is its tick, `can` its line. `port`
+//! is the interface between a motor controller and observer with compensation, `encoder` reads the counts, `learnt`
+//! holds the estimated parameters between runs, `kept_memory` stores them in flash. All of these are independent of the
+//! hardware and tested on the host. `board`, `clock`, `logger`, `panic_message` and `stack` exist on a board only,
+//! `measuring` in the emulator only. The physics is in `model-core`, the messages are in `link`.
 
 pub mod batcher;
 pub mod can;

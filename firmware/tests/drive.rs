@@ -4,21 +4,20 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use drives::bus::CanServer;
-use drives::drive::{State, VirtualPower};
+use drives::drive::State;
 use drives::frame::{Id, standard};
 use drives::{Drive, Frame};
 use firmware::can::{CanReceiver, CanSender, FRAMES, Received};
 use firmware::drive::DriveTick;
 use model_core::VirtualJointDesign;
-use virtual_drive::DriveDesign;
-use virtual_drive::maker::{Maker, Odrive3};
+use virtual_drive::maker::{Cia402, Maker, Odrive3};
+use virtual_drive::{DriveDesign, VirtualDrive};
 
 /// Frames of a peripheral: those in its FIFO, and those that were handed over.
 #[derive(Default)]
 struct Bus {
     fifo: VecDeque<Frame>,
-    overran: bool,
+    is_off: bool,
     sent: Vec<Frame>,
     /// Frames that find room in a tick.
     room: usize,
@@ -29,12 +28,10 @@ type Shared = Rc<RefCell<Bus>>;
 struct Half(Shared);
 
 impl CanReceiver for Half {
+    fn acknowledge(&mut self) {}
+
     fn receive(&mut self) -> Option<Frame> {
         self.0.borrow_mut().fifo.pop_front()
-    }
-
-    fn overran(&mut self) -> bool {
-        std::mem::take(&mut self.0.borrow_mut().overran)
     }
 }
 
@@ -49,45 +46,48 @@ impl CanSender for Half {
         has_room
     }
 
-    fn recover(&mut self) {}
+    fn is_off(&mut self) -> bool {
+        self.0.borrow().is_off
+    }
 }
 
 fn id(command: u16) -> Id {
     standard(1 << 5 | command)
 }
 
-/// Runs a drive for some ticks; `each` receives the number of the tick and the bus, and returns the room for frames.
-fn run(ticks: usize, mut each: impl FnMut(usize, &mut Bus) -> usize) -> (Vec<Frame>, Drive, (u32, u32)) {
+/// Joint Q1 behind the drive of a maker, with identifier 1.
+fn with_drive<M: Maker, R>(run: impl FnOnce(VirtualDrive<'_, M, 3>) -> R) -> R {
     let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
     let tables = VirtualJointDesign::<3>::new(&q1, 10_000).unwrap();
-    let numbers = DriveDesign::new(&q1.parameters, &q1.surroundings, 40.0, true);
-    let settings = Odrive3::settings(numbers.settings(Odrive3::PEAK_CURRENT, Odrive3::SUPPLY, true));
+    let design = DriveDesign::new(&q1.parameters, &q1.surroundings, 40.0, true);
+    run(VirtualDrive::new(tables.joint(), &design, 1))
+}
+
+/// Runs a drive for some ticks; `each` receives the number of the tick and the bus, and returns the room for frames.
+fn run<M: Maker>(ticks: usize, mut each: impl FnMut(usize, &mut Bus) -> usize) -> (Vec<Frame>, Drive) {
     let bus = Shared::default();
     let mut received = Received::new();
     let (mut interrupt, inbox) = received.split(Half(Rc::clone(&bus)));
-    let mut tick = DriveTick::new(
-        tables.joint(),
-        Drive::new(settings),
-        Odrive3::server(1, &settings),
-        VirtualPower::new(Odrive3::SUPPLY),
-        Half(Rc::clone(&bus)),
-        inbox,
-    );
-    for number in 0..ticks {
-        let room = each(number, &mut bus.borrow_mut());
-        bus.borrow_mut().room = room;
-        for _ in 0..4 {
-            interrupt.service();
+    let drive = with_drive::<M, _>(|drive| {
+        let mut tick = DriveTick::new(drive, Half(Rc::clone(&bus)), inbox);
+        for number in 0..ticks {
+            let room = each(number, &mut bus.borrow_mut());
+            bus.borrow_mut().room = room;
+            for _ in 0..4 {
+                interrupt.service();
+            }
+            interrupt.begin_period();
+            tick.tick();
         }
-        tick.tick();
-    }
+        tick.drive().clone()
+    });
     let sent = std::mem::take(&mut bus.borrow_mut().sent);
-    (sent, tick.drive().clone(), tick.losses())
+    (sent, drive)
 }
 
 #[test]
 fn drive_obeys_and_answers_in_order() {
-    let (sent, drive, lost) = run(3000, |tick, bus| {
+    let (sent, drive) = run::<Odrive3>(3000, |tick, bus| {
         match tick {
             100 => bus.fifo.extend(Frame::classic(id(0x07), &[8, 0, 0, 0])),
             200 => bus.fifo.extend([0x17, 0x14].map(|command| Frame::remote(id(command), 8).unwrap())),
@@ -95,16 +95,16 @@ fn drive_obeys_and_answers_in_order() {
         }
         3
     });
-    assert_eq!((drive.state(), lost), (State::Enabled, (0, 0)));
+    assert_eq!(drive.state(), State::Enabled);
     let answers: Vec<Id> = sent.iter().map(|frame| frame.id).filter(|it| [id(0x17), id(0x14)].contains(it)).collect();
     assert_eq!(answers, [id(0x17), id(0x14)]);
     assert!(sent.iter().filter(|frame| frame.id == id(0x01)).count() >= 2, "heartbeats");
 }
 
-/// Frames wait while the bus is busy, and those beyond the outbox are lost and counted.
+/// Frames wait while the bus is busy, and those beyond the outbox are lost.
 #[test]
 fn frames_wait_for_a_busy_bus() {
-    let (sent, _, (_, unsent)) = run(1000, |tick, bus| {
+    let (sent, _) = run::<Odrive3>(1000, |tick, bus| {
         if tick < 10 {
             bus.fifo.extend((0..5).filter_map(|_| Frame::remote(id(0x17), 8)));
         }
@@ -112,30 +112,39 @@ fn frames_wait_for_a_busy_bus() {
     });
     let answers = sent.iter().filter(|frame| frame.id == id(0x17)).count();
     assert!((30..=32).contains(&answers), "{answers}");
-    assert!(unsent >= 18, "{unsent}");
 }
 
-/// A FIFO that overran and a full queue are counted.
+/// A full queue keeps the oldest frames, and frames that arrive in a period are left to the next one.
 #[test]
-fn lost_frames_are_counted() {
-    let (_, _, (lost, _)) = run(2, |tick, bus| {
-        if tick == 0 {
-            bus.overran = true;
-            bus.fifo.extend((0..FRAMES + 5).filter_map(|_| Frame::classic(standard(0x700), &[])));
-        }
-        3
-    });
-    // Four services take 12 frames; the overrun is one loss.
-    assert_eq!(lost, 1);
-    let burst = (0..FRAMES as u16 + 3).filter_map(|count| Frame::classic(standard(count), &[]));
+fn frames_belong_to_the_period_before() {
+    let frames = |numbers: std::ops::Range<u16>| numbers.filter_map(|it| Frame::classic(standard(it), &[]));
     let bus = Shared::default();
-    bus.borrow_mut().fifo.extend(burst);
+    bus.borrow_mut().fifo.extend(frames(0..FRAMES as u16 + 3));
     let mut received = Received::new();
     let (mut interrupt, mut inbox) = received.split(Half(Rc::clone(&bus)));
     (0..10).for_each(|_| interrupt.service());
-    assert_eq!(inbox.lost(), 3);
-    let first = inbox.take().unwrap();
-    assert_eq!(first.raw_id(), 0);
+    assert_eq!(inbox.count(), 0);
+    interrupt.begin_period();
+    assert_eq!(inbox.count(), FRAMES);
+    let taken: Vec<u32> = (0..FRAMES).filter_map(|_| inbox.take()).map(|frame| frame.raw_id()).collect();
+    assert_eq!(taken, (0..FRAMES as u32).collect::<Vec<_>>());
+    bus.borrow_mut().fifo.extend(frames(100..102));
+    interrupt.service();
+    assert_eq!(inbox.count(), 0);
+    interrupt.begin_period();
+    assert_eq!((inbox.count(), inbox.take().map(|frame| frame.raw_id())), (2, Some(100)));
+}
+
+/// A drive on CANopen reports that its controller went off the bus.
+#[test]
+fn bus_off_reaches_the_server() {
+    let (sent, _) = run::<Cia402>(1500, |tick, bus| {
+        bus.is_off = (1000..1014).contains(&tick);
+        3
+    });
+    let emergencies = sent.iter().filter(|frame| frame.id == standard(0x81));
+    let codes: Vec<&[u8]> = emergencies.map(|frame| &frame.data()[..2]).collect();
+    assert_eq!(codes, [[0x40, 0x81], [0, 0]]);
 }
 
 /// The twin's order of work gives the frames of the tick, whatever the room in the peripheral.
@@ -151,22 +160,17 @@ fn ticks_equal_a_plain_loop() {
     let due = |tick: usize| orders.iter().filter(move |(at, _)| *at == tick).map(|(_, frame)| frame.clone());
     // Some ticks after the last cyclic frames, so that all frames find room.
     const TICKS: usize = 2050;
-    let (sent, _, _) = run(TICKS, |tick, bus| {
+    let (sent, _) = run::<Odrive3>(TICKS, |tick, bus| {
         bus.fifo.extend(due(tick));
         1
     });
-    let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-    let tables = VirtualJointDesign::<3>::new(&q1, 10_000).unwrap();
-    let numbers = DriveDesign::new(&q1.parameters, &q1.surroundings, 40.0, true);
-    let settings = Odrive3::settings(numbers.settings(Odrive3::PEAK_CURRENT, Odrive3::SUPPLY, true));
-    let (mut joint, mut drive) = (tables.joint(), Drive::new(settings));
-    let (mut server, mut power) = (Odrive3::server(1, &settings), VirtualPower::new(Odrive3::SUPPLY));
     let mut expected = Vec::new();
-    for tick in 0..TICKS {
-        due(tick).for_each(|frame| server.receive(&frame, &mut drive, &mut |answer| expected.push(answer)));
-        virtual_drive::step(&mut joint, &mut drive, &mut power);
-        server.tick(&mut drive, &mut |frame| expected.push(frame));
-    }
+    with_drive::<Odrive3, _>(|mut drive| {
+        for tick in 0..TICKS {
+            due(tick).for_each(|frame| drive.receive(&frame, &mut |answer| expected.push(answer)));
+            drive.step(&mut |frame| expected.push(frame));
+        }
+    });
     assert!(sent.len() > 40);
     assert_eq!(sent, expected);
 }

@@ -2,29 +2,24 @@
 //! A joint behind a finished drive, one control period at a time, in f32: the role `drive` of the firmware and
 //! `joint twin --image` run the same functions, so that equal frames in equal periods have equal answers.
 //!
-//! In each period the frames that arrived go to the drive's server first, then [`step`] runs joint, drive and supply,
-//! then the server's own `tick` sends cyclic frames. Makers of drives are types of [`maker`]; [`DriveDesign`] holds the
-//! numbers of a drive that fits a joint.
+//! [`VirtualDrive`] holds joint, drive, supply and the server of a maker's protocol. In each period the frames that
+//! arrived go to the server first, then [`step`] runs joint, drive and supply, then the server sends its cyclic frames.
+//! Makers of drives are types of [`maker`]; [`DriveDesign`] holds the numbers of a drive that fits a joint.
 //!
 //! ```
-//! use drives::bus::CanServer;
-//! use drives::drive::VirtualPower;
-//! use drives::{Drive, Frame, frame::standard};
+//! use drives::{Frame, frame::standard};
 //! use model_core::VirtualJointDesign;
-//! use virtual_drive::maker::{Damiao, Maker};
-//! use virtual_drive::{DriveDesign, step};
+//! use virtual_drive::maker::Damiao;
+//! use virtual_drive::{DriveDesign, VirtualDrive};
 //!
 //! let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
 //! let tables = VirtualJointDesign::<3>::new(&q1, 10_000)?;
-//! let numbers = DriveDesign::new(&q1.parameters, &q1.surroundings, 40.0, true);
-//! let settings = Damiao::settings(numbers.settings(Damiao::PEAK_CURRENT, Damiao::SUPPLY, true));
-//! let (mut joint, mut power) = (tables.joint(), VirtualPower::new(Damiao::SUPPLY));
-//! let (mut drive, mut server) = (Drive::new(settings), Damiao::server(1, &settings));
+//! let design = DriveDesign::new(&q1.parameters, &q1.surroundings, 40.0, true);
+//! let mut drive = VirtualDrive::<Damiao, 3>::new(tables.joint(), &design, 1);
 //! let mut answers = 0;
 //! let enable = Frame::classic(standard(1), &[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfc]).unwrap();
-//! server.receive(&enable, &mut drive, &mut |_| answers += 1);
-//! step(&mut joint, &mut drive, &mut power);
-//! server.tick(&mut drive, &mut |_| answers += 1);
+//! drive.receive(&enable, &mut |_| answers += 1);
+//! drive.step(&mut |_| answers += 1);
 //! assert_eq!(answers, 1);
 //! # Ok::<(), model_core::gears::design::DesignError>(())
 //! ```
@@ -36,8 +31,10 @@ mod design;
 pub mod maker;
 mod numbers;
 mod period;
+mod virtual_drive;
 
 #[cfg(feature = "design")]
 pub use design::joint_tables;
 pub use numbers::DriveDesign;
 pub use period::step;
+pub use virtual_drive::VirtualDrive;

@@ -45,6 +45,13 @@ pub struct Name {
     pub is_flexible: bool,
 }
 
+impl Name {
+    /// Finds a maker by its word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        NAMES.into_iter().find(|name| name.word == word)
+    }
+}
+
 const fn name<M: Maker>(word: &'static str, type_name: &'static str) -> Name {
     Name { word, type_name, max_id: M::MAX_ID, is_flexible: M::IS_FLEXIBLE }
 }
@@ -71,7 +78,8 @@ pub struct Moteus;
 
 impl Maker for Moteus {
     type Server = moteus::Server;
-    const MAX_ID: u8 = 127;
+    /// Identifier 127 addresses every drive on the bus.
+    const MAX_ID: u8 = 126;
     const IS_FLEXIBLE: bool = true;
 
     fn settings(settings: Settings) -> Settings {
@@ -199,20 +207,22 @@ fn peak_torque(settings: &Settings) -> f32 {
 
 /// Damiao type with the smallest torque range that the joint fits into; else the one with the largest.
 pub fn damiao_type(settings: &Settings) -> (&'static str, damiao::mit::Ranges) {
-    smallest_that_fits(damiao::MOTOR_TYPES[0], &damiao::MOTOR_TYPES, |(_, ranges)| ranges.torque, settings)
+    smallest_that_fits(&damiao::MOTOR_TYPES, |(_, ranges)| ranges.torque, settings)
 }
 
 /// RobStride model with the smallest torque range that the joint fits into; else the one with the largest.
 pub fn robstride_model(settings: &Settings) -> Model {
-    smallest_that_fits(ROBSTRIDES[0], &ROBSTRIDES, |model| model.sheet().torque.high, settings)
+    smallest_that_fits(&ROBSTRIDES, |model| model.sheet().torque.high, settings)
 }
 
 /// Model whose torque range is the smallest that holds the joint's; else the one with the largest range.
-fn smallest_that_fits<M: Copy>(first: M, models: &[M], torque: fn(&M) -> f32, settings: &Settings) -> M {
+fn smallest_that_fits<M: Copy, const COUNT: usize>(
+    models: &[M; COUNT],
+    torque: fn(&M) -> f32,
+    settings: &Settings,
+) -> M {
     let needed = peak_torque(settings);
-    models.iter().copied().fold(first, |best, model| {
-        let (range, best_range) = (torque(&model), torque(&best));
-        let is_better = if best_range < needed { range > best_range } else { range >= needed && range < best_range };
-        if is_better { model } else { best }
-    })
+    let order = |one: &&M, other: &&M| torque(one).total_cmp(&torque(other));
+    let smallest = models.iter().filter(|model| torque(model) >= needed).min_by(order);
+    *smallest.or_else(|| models.iter().rev().max_by(order)).unwrap_or(&models[0])
 }

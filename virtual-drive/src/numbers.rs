@@ -14,7 +14,7 @@ const ROTOR_CROSSOVER_RATIO: f32 = 0.25;
 const OVERSPEED_RATIO: f32 = 1.5;
 /// Lowest and highest voltage over that of the supply [-].
 const VOLTAGE_RATIOS: (f32, f32) = (0.5, 1.25);
-/// Time without a reading after which an encoder is lost [control periods in a second]: 10 ms.
+/// Control rate over the number of periods without a reading after which an encoder is lost [Hz]: 10 ms. Chosen.
 const SILENCE_RATIO: u32 = 100;
 
 /// Numbers of a joint from which the settings of its drive follow.

@@ -2,8 +2,9 @@
 //! from bus-off.
 
 use board::device::board::Board as Described;
-use board::device::image::{default_drive_rate, has_room_for_all};
+use board::device::image::{DriveOnBus, default_drive_rate};
 use drives::Frame;
+use drives::frame::standard;
 
 use super::can_client::{Client, Mode, Order};
 use super::clean;
@@ -11,7 +12,7 @@ use crate::boards::Subject;
 use crate::can_bus::CanBus;
 use crate::can_twin::DriveOf;
 use crate::cpu::Board;
-use crate::images::{JOINT, drive_of};
+use crate::images::{JOINT, canopen_drive, drive_of};
 use crate::wires::{MICROSECOND, Time};
 
 /// Millisecond.
@@ -98,24 +99,29 @@ impl Session<'_> {
 
     /// Compares every frame so far with the twin's.
     fn compare(&mut self, subject: &Subject) -> Result<usize, String> {
-        let mut joint =
-            joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?).map_err(|_| "a broken preset")?;
-        joint.surroundings.control_rate = default_drive_rate(&joint.parameters, &subject.board);
         let drive = drive_of(&subject.board).ok_or("the board is no drive")?;
-        let processor = subject.board.processor();
-        let twin = DriveOf { maker: drive.maker.word, id: drive.id, joint: &joint, processor };
-        let bus = self.bus();
-        let in_order = bus.to_others.iter().zip(&bus.handed).all(|(sent, (_, handed))| sent == handed);
-        if !in_order {
-            return Err("the board sends frames in another order than the core hands them over".into());
-        }
-        twin.compare(&bus.handed, &bus.taken, bus.ticks)
+        compare(&self.board, subject, &drive)
     }
 
     fn lost_nothing(&mut self) -> Result<(), String> {
         let (overruns, taken) = (self.bus().overruns, self.bus().taken.len());
         if overruns > 0 { Err(format!("{overruns} frames beside {taken} were lost in the FIFO")) } else { Ok(()) }
     }
+}
+
+/// Compares every frame of a board with the twin's.
+fn compare(board: &Board<'_>, subject: &Subject, drive: &DriveOnBus) -> Result<usize, String> {
+    let mut joint =
+        joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?).map_err(|_| "a broken preset")?;
+    joint.surroundings.control_rate = default_drive_rate(&joint.parameters, &subject.board);
+    let processor = subject.board.processor();
+    let twin = DriveOf { maker: drive.maker.word, id: drive.id, joint: &joint, processor };
+    let bus = &board.machine().wires.can;
+    let in_order = bus.to_others.iter().zip(&bus.handed).all(|(sent, (_, handed))| sent == handed);
+    if !in_order {
+        return Err("the board sends frames in another order than the core hands them over".into());
+    }
+    twin.compare(bus)
 }
 
 /// A client enables the drive, moves it, reads, stops it and enables it again.
@@ -189,10 +195,42 @@ pub fn recovers(subject: &Subject) -> Result<String, String> {
     if session.asked_mode("at the end")? != Mode::On {
         return Err("the drive cannot be enabled at the end".into());
     }
+    session.compare(subject)?;
     Ok(format!("{} ticks", session.bus().ticks))
 }
 
-/// Returns whether a board has an image of a drive, and the model its CAN.
+/// Error code of CiA 402 for a controller that was off the bus, in an emergency frame of node 1.
+const BUS_OFF: (u32, [u8; 2]) = (0x81, [0x40, 0x81]);
+
+/// A drive on CANopen reports bus-off by one emergency frame, and every frame is the twin's.
+pub fn reports_bus_off(subject: &Subject) -> Result<String, String> {
+    let mut board = subject.start()?;
+    let read = Frame::classic(standard(0x601), &[0x40, 0x00, 0x10, 0, 0, 0, 0, 0]).ok_or("no frame")?;
+    let run = |board: &mut Board<'_>, reads: usize, destroys: u32| {
+        board.machine_mut().wires.can.destroys = destroys;
+        for _ in 0..reads {
+            board.machine_mut().wires.can.to_board.push_back(read.clone());
+            board.machine_mut().attention = true;
+            board.run_for(10 * MILLISECOND);
+            clean(board)?;
+        }
+        let bus = &board.machine().wires.can;
+        let is_report = |frame: &&Frame| frame.raw_id() == BUS_OFF.0 && frame.data().starts_with(&BUS_OFF.1);
+        Ok::<usize, String>(bus.to_others.iter().filter(is_report).count())
+    };
+    if run(&mut board, 20, 0)? > 0 {
+        return Err("bus-off is reported on a bus without errors".into());
+    }
+    match run(&mut board, 20, 34)? {
+        1 => {}
+        count => return Err(format!("bus-off is reported {count} times")),
+    }
+    let drive = canopen_drive(&subject.board).ok_or("the board is no drive")?;
+    let count = compare(&board, subject, &drive)?;
+    Ok(format!("{count} frames, each the twin's, among them the report"))
+}
+
+/// Returns whether a board has an image of a drive.
 pub fn is_for(board: &Described) -> bool {
-    drive_of(board).is_some() && board.chip().has_can() && has_room_for_all(board)
+    board.description.can_line().is_ok()
 }

@@ -54,9 +54,13 @@ impl Client {
         }
     }
 
-    /// Frame for nobody here, as short as the bus allows.
+    /// Frame for nobody here, as short as the bus allows: on CAN FD the end of the frame has the second bit rate.
     pub fn foreign(self, count: u16) -> Option<Frame> {
-        Frame::classic(standard(0x700 | count & 0x3f), &[])
+        let id = standard(0x700 | count & 0x3f);
+        match self {
+            Self::Simple => Frame::classic(id, &[]),
+            Self::Moteus => Frame::flexible(id, &[], 0),
+        }
     }
 
     /// Mode in a frame of the drive.

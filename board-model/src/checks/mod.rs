@@ -101,6 +101,7 @@ pub const ALL: &[Named] = &[
     short("answers a client as the host's twin does, in every frame", &[Work::Drive], can::equals_twin),
     short("loses no frame of a full bus", &[Work::Drive], can::hears_in_a_flood),
     short("comes back after bus-off, a lonely bus and a held one", &[Work::Drive], can::recovers),
+    short("reports bus-off to a CANopen master, as the host's twin does", &[Work::Canopen], can::reports_bus_off),
     short("power cut at some operations of flash", &[Work::Observer], memory::survives_some_cuts),
     Named {
         name: "power cut at every operation of flash",
@@ -112,14 +113,14 @@ pub const ALL: &[Named] = &[
     },
 ];
 
-/// Returns whether a board has an image of a kind: the STM32G431 has room for the plant only.
+/// Returns whether a board has an image of a kind: the STM32G431 has room for the plant and the smaller drives only.
 fn has_image(board: &Described, work: Work) -> bool {
     match work {
         Work::Plant => true,
         Work::Observer | Work::Loop => board.chip() != Chip::Stm32g431,
         Work::SpiSlave => board.has_spi_slave(),
-        // The chips whose CAN is modelled.
         Work::Drive => can::is_for(board),
+        Work::Canopen => can::is_for(board) && board.chip() != Chip::Stm32g431,
     }
 }
 

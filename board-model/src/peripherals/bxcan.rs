@@ -295,7 +295,7 @@ impl Bxcan {
                         if takes_part {
                             self.arrive(&transfer.frame, wires);
                         }
-                        wires.can.is_received(takes_part);
+                        wires.can.end_reception(takes_part);
                     }
                 }
             }
@@ -372,7 +372,12 @@ impl Peripheral for Bxcan {
             }
             TSR => self.status(),
             RF0R => self.fifo_status(),
-            ESR => self.error_status() | self.registers.get(ESR) & 0x70,
+            ESR => {
+                if self.has_bus(wires) {
+                    wires.can.note_seen_off(self.node.is_off);
+                }
+                self.error_status() | self.registers.get(ESR) & 0x70
+            }
             RX..0x1c0 => {
                 if self.fifo.is_empty() {
                     wires.violation("CAN_RI0R", "the mailbox of an empty FIFO is read", "RM0090 32.7.3");

@@ -351,7 +351,7 @@ impl Fdcan {
                         if takes_part {
                             self.arrive(&transfer.frame, wires);
                         }
-                        wires.can.is_received(takes_part);
+                        wires.can.end_reception(takes_part);
                     }
                 }
             }
@@ -416,6 +416,9 @@ impl Peripheral for Fdcan {
                 sent | received.min(127) << 8
             }
             PSR => {
+                if self.has_bus(wires) {
+                    wires.can.note_seen_off(self.node.is_off);
+                }
                 let most = self.node.errors.into_iter().max().unwrap_or_default();
                 let passive = u32::from(most >= PASSIVE) << 5 | u32::from(most >= WARNING) << 6;
                 0x700 | self.node.last_error | passive | u32::from(self.node.is_off) << 7

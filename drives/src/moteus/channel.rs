@@ -12,8 +12,10 @@ pub(super) struct Channel {
 impl Channel {
     /// Takes up to `most` bytes of the answers.
     pub fn take(&mut self, most: usize) -> Vec<u8, 128> {
-        let taken = self.answers.iter().copied().take(most).collect();
-        self.answers = self.answers.iter().copied().skip(most).collect();
+        let (taken, rest) = self.answers.split_at_checked(most).unwrap_or((&self.answers, &[]));
+        // Both parts fit, since the whole does.
+        let [taken, rest] = [taken, rest].map(|part| Vec::from_slice(part).unwrap_or_default());
+        self.answers = rest;
         taken
     }
 }

@@ -8,10 +8,10 @@
 //! | others | `ERR` and the reason |
 
 use core::f32::consts::TAU;
-use core::fmt::Write;
 
 use heapless::String;
 
+use super::decimal;
 use super::server::Server;
 use crate::drive::{Drive, Expiry};
 use crate::turns::Turns;
@@ -22,15 +22,12 @@ const TIMEOUT_STOPPED: f32 = 0.0;
 const TIMEOUT_DAMPED: f32 = 12.0;
 
 impl Server {
-    /// Reads bytes of lines and follows each line that is complete.
+    /// Reads bytes of lines and follows each line that is complete and not empty.
     pub(super) fn read_text(&mut self, text: &[u8], drive: &mut Drive) {
         for byte in text {
             if matches!(byte, b'\r' | b'\n') {
                 let line = core::mem::take(&mut self.channel.line);
-                let line = core::str::from_utf8(&line).unwrap_or("?").trim();
-                if !line.is_empty() {
-                    self.follow_line(line, drive);
-                }
+                self.follow_line(core::str::from_utf8(&line).unwrap_or("?"), drive);
             } else if self.channel.line.push(*byte).is_err() {
                 // A line that is too long is no command.
                 self.channel.line.clear();
@@ -41,24 +38,27 @@ impl Server {
     fn follow_line(&mut self, line: &str, drive: &mut Drive) {
         let mut words = line.split_ascii_whitespace();
         let words = [words.next(), words.next(), words.next(), words.next()].map(Option::unwrap_or_default);
+        if words[0].is_empty() {
+            return;
+        }
         let mut answer = String::<40>::new();
         let _ = match words {
             ["conf", "get", name, ""] => match self.configure(name, None, drive) {
-                Some(value) => write!(answer, "{value}\r\n"),
-                None => answer.write_str("ERR error reading\r\n"),
+                Some(value) => answer.push_str(&decimal::print(value)).and_then(|()| answer.push_str("\r\n")),
+                None => answer.push_str("ERR error reading\r\n"),
             },
             ["conf", "set", name, value] => {
-                let value = value.parse().ok();
+                let value = decimal::parse(value);
                 let is_set = value.is_some() && self.configure(name, value, drive).is_some();
-                answer.write_str(if is_set { "OK\r\n" } else { "ERR error setting\r\n" })
+                answer.push_str(if is_set { "OK\r\n" } else { "ERR error setting\r\n" })
             }
             ["d", "stop", ..] => {
                 drive.disable();
                 drive.clear_fault();
-                answer.write_str("OK\r\n")
+                answer.push_str("OK\r\n")
             }
-            ["conf", "write", ..] | ["tel", "stop", ..] => answer.write_str("OK\r\n"),
-            _ => answer.write_str("ERR unknown command\r\n"),
+            ["conf", "write", ..] | ["tel", "stop", ..] => answer.push_str("OK\r\n"),
+            _ => answer.push_str("ERR unknown command\r\n"),
         };
         // Answers that nobody fetches are lost.
         let _ = self.channel.answers.extend_from_slice(answer.as_bytes());

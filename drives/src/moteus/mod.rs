@@ -60,6 +60,7 @@
 mod channel;
 pub mod client;
 pub mod command;
+mod decimal;
 mod diagnostic;
 mod read;
 pub mod register;

@@ -159,6 +159,7 @@ impl Server {
     }
 
     /// Answers with up to `most` bytes of the diagnostic channel.
+    #[inline(never)]
     fn write_text(&mut self, most: usize, reply: &mut Payload) -> Flow {
         let room = reply.capacity().saturating_sub(reply.len() + TEXT_OVERHEAD);
         let text = self.channel.take(most.min(room));

@@ -1,7 +1,8 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![allow(unsafe_op_in_unsafe_fn, reason = "the framework writes its tasks so")]
 //! Role `drive`: a joint behind a finished drive on a CAN bus. Joint, drive and identifier are fixed when the image is
-//! built; the bus is its only interface. The work of the tick is `firmware::drive`.
+//! built; the bus is its only interface. The work of the tick is `firmware::drive`. The tick runs below the receive
+//! interrupt: `firmware::can`.
 
 #[cfg(all(target_os = "none", not(has_can)))]
 compile_error!("the board's file has no [can]");
@@ -11,15 +12,14 @@ macro_rules! app {
     ($received:ident) => {
         #[rtic::app(device = firmware::board::pac)]
         mod app {
-            use drives::Drive;
-            use drives::drive::VirtualPower;
-            use firmware::board::{self, CanLine, Started, Watchdog};
+            use cortex_m::peripheral::SCB;
+            use firmware::board::{self, Started, Watchdog};
             use firmware::can::{Received, Receiving};
             use firmware::clock;
             use firmware::drive::DriveTick;
             use firmware::tables::{PLANETS, TABLES};
             use model_core::virtual_joint::VirtualJoint;
-            use virtual_drive::maker::Maker;
+            use virtual_drive::VirtualDrive;
 
             #[allow(
                 dead_code,
@@ -40,12 +40,12 @@ macro_rules! app {
             #[shared]
             struct Shared {
                 #[lock_free]
-                receiving: Receiving<'static, <CanLine as board::CanHalves>::Receiver>,
+                receiving: Receiving<'static, board::can::Receiver>,
             }
 
             #[local]
             struct Local {
-                drive: DriveTick<'static, <ThisMaker as Maker>::Server, <CanLine as board::CanHalves>::Sender, PLANETS>,
+                drive: DriveTick<'static, ThisMaker, board::can::Sender, PLANETS>,
                 watchdog: Watchdog,
             }
 
@@ -56,28 +56,29 @@ macro_rules! app {
                 let (receiver, sender) = started.open_can();
                 let Started { watchdog, .. } = started;
                 let (receiving, inbox) = cx.local.received.split(receiver);
-                let settings =
-                    ThisMaker::settings(design::DESIGN.settings(ThisMaker::PEAK_CURRENT, ThisMaker::SUPPLY, true));
-                let drive = DriveTick::new(
-                    VirtualJoint::new(&TABLES, &control::SURROUNDINGS),
-                    Drive::new(settings),
-                    ThisMaker::server(design::ID, &settings),
-                    VirtualPower::new(ThisMaker::SUPPLY),
-                    sender,
-                    inbox,
-                );
+                let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+                let drive = VirtualDrive::new(joint, &design::DESIGN, design::ID);
+                let drive = DriveTick::new(drive, sender, inbox);
                 clock::start(&mut core.SYST);
                 (Shared { receiving }, Local { drive, watchdog })
             }
 
-            /// Runs a control period, at the highest priority.
-            #[task(binds = SysTick, priority = 16, local = [drive])]
-            fn tick(cx: tick::Context) {
-                clock::in_tick(|_| cx.local.drive.tick());
+            /// Begins a control period and requests its tick, at the priority of `receive`: a frame arrives either before
+            /// the period or after its beginning.
+            #[task(binds = SysTick, priority = 16, shared = [receiving])]
+            fn begin_period(cx: begin_period::Context) {
+                clock::in_tick(|_| cx.shared.receiving.begin_period());
+                SCB::set_pendsv();
             }
 
-            /// Takes received frames from the peripheral.
-            #[task(binds = $received, priority = 2, shared = [receiving])]
+            /// Runs a control period.
+            #[task(binds = PendSV, priority = 15, local = [drive])]
+            fn tick(cx: tick::Context) {
+                cx.local.drive.tick();
+            }
+
+            /// Takes received frames from the peripheral, before its FIFO overflows in a long tick.
+            #[task(binds = $received, priority = 16, shared = [receiving])]
             fn receive(cx: receive::Context) {
                 cx.shared.receiving.service();
             }

@@ -43,7 +43,7 @@ pub fn open(clocks: &pac::RCC) -> (Receiver, Sender) {
     // A peripheral that does not answer is left alone: nothing is received and nothing sent.
     let _ = wait_until(|| unit.msr().read().inak().bit_is_set());
     unit.mcr().modify(|_, w| w.txfp().set_bit().abom().set_bit());
-    let (prescaler, before, after, jump) = CAN_TIMING.unwrap_or((1, 1, 1, 1));
+    let (prescaler, before, after, jump) = CAN_TIMING;
     let timing = (jump - 1) << 24 | (after - 1) << 20 | (before - 1) << 16 | (prescaler - 1);
     // SAFETY: the build has held the timing against the ranges of the reference manual.
     unit.btr().write(|w| unsafe { w.bits(timing) });
@@ -70,6 +70,9 @@ fn accept_all(filters: &pac::CAN1) {
 }
 
 impl CanReceiver for Receiver {
+    /// Does nothing: the interrupt is requested as long as a frame is in the FIFO.
+    fn acknowledge(&mut self) {}
+
     fn receive(&mut self) -> Option<Frame> {
         let status = self.0.rf0r().read();
         // While the release of the frame before is under way, its registers still hold that frame.
@@ -81,14 +84,6 @@ impl CanReceiver for Receiver {
         let data = [mailbox.rdlr().read().bits(), mailbox.rdhr().read().bits()].map(u32::to_le_bytes);
         self.0.rf0r().write(|w| w.rfom().release());
         decode(id, length as usize, data)
-    }
-
-    fn overran(&mut self) -> bool {
-        let overran = self.0.rf0r().read().fovr().is_overrun();
-        if overran {
-            self.0.rf0r().write(|w| w.fovr().clear());
-        }
-        overran
     }
 }
 
@@ -110,7 +105,9 @@ impl CanSender for Sender {
         true
     }
 
-    fn recover(&mut self) {}
+    fn is_off(&mut self) -> bool {
+        self.0.esr().read().boff().bit_is_set()
+    }
 }
 
 /// Frame of a mailbox.

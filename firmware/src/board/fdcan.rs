@@ -42,9 +42,8 @@ const REMOTE: u32 = 1 << 29;
 /// Bits of an element's second word.
 const FLEXIBLE: u32 = 1 << 21;
 const FAST: u32 = 1 << 20;
-/// New frame in FIFO 0, and lost frame, in the interrupt flags.
+/// New frame in FIFO 0, in the interrupt flags.
 const NEW: u32 = 1;
-const LOST: u32 = 1 << 2;
 /// Initialisation, and access to the settings, in CCCR; FD frames and second bit rate.
 const INIT: u32 = 1;
 const CHANGE: u32 = 1 << 1;
@@ -79,7 +78,7 @@ pub fn open(clocks: &pac::RCC) -> (Receiver, Sender) {
         unit.cccr().write(|w| w.bits(INIT | CHANGE));
         let flexible = if CAN_DATA_TIMING.is_some() { FLEXIBLE_FRAMES } else { 0 };
         unit.cccr().write(|w| w.bits(INIT | CHANGE | flexible));
-        let (prescaler, before, after, jump) = CAN_TIMING.unwrap_or((1, 2, 1, 1));
+        let (prescaler, before, after, jump) = CAN_TIMING;
         unit.nbtp().write(|w| w.bits((jump - 1) << 25 | (prescaler - 1) << 16 | (before - 1) << 8 | (after - 1)));
         if let Some((prescaler, before, after, jump)) = CAN_DATA_TIMING {
             let timing = (prescaler - 1) << 16 | (before - 1) << 8 | (after - 1) << 4 | (jump - 1);
@@ -106,10 +105,14 @@ fn read_ram(address: usize) -> u32 {
 }
 
 impl CanReceiver for Receiver {
-    fn receive(&mut self) -> Option<Frame> {
-        // Cleared before the look, so that a frame that arrives after it raises the interrupt again.
+    /// Clears the flag of a new frame, once before the first look at the FIFO: cleared between two looks, the flag of a
+    /// frame that the last look of a service does not reach would be lost.
+    fn acknowledge(&mut self) {
         // SAFETY: ones clear flags.
         self.0.ir().write(|w| unsafe { w.bits(NEW) });
+    }
+
+    fn receive(&mut self) -> Option<Frame> {
         let status = self.0.rxf0s().read();
         if status.f0fl().bits() == 0 {
             return None;
@@ -125,15 +128,6 @@ impl CanReceiver for Receiver {
         // SAFETY: the index is that of the FIFO.
         self.0.rxf0a().write(|w| unsafe { w.bits(index.into()) });
         decode(id, control, data.as_flattened().get(..length)?)
-    }
-
-    fn overran(&mut self) -> bool {
-        let overran = self.0.ir().read().bits() & LOST != 0;
-        if overran {
-            // SAFETY: ones clear flags.
-            self.0.ir().write(|w| unsafe { w.bits(LOST) });
-        }
-        overran
     }
 }
 
@@ -161,11 +155,13 @@ impl CanSender for Sender {
         true
     }
 
-    fn recover(&mut self) {
-        if self.0.psr().read().bo().bit_is_set() {
+    fn is_off(&mut self) -> bool {
+        let is_off = self.0.psr().read().bo().bit_is_set();
+        if is_off {
             // SAFETY: the other bits keep their values.
             self.0.cccr().modify(|r, w| unsafe { w.bits(r.bits() & !INIT) });
         }
+        is_off
     }
 }
 

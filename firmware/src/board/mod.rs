@@ -4,16 +4,14 @@
 
 mod bounded_wait;
 #[cfg(all(family = "stm32f4", has_can))]
-mod bxcan;
-#[cfg(has_can)]
-mod can_unit;
+pub mod bxcan;
 mod chip;
 mod description;
 #[cfg(has_spi_slave)]
 pub mod dma_slave;
 mod external_clock;
 #[cfg(all(family = "stm32g4", has_can))]
-mod fdcan;
+pub mod fdcan;
 pub mod flash_slots;
 #[cfg(not(family = "stm32h7"))]
 pub mod flash_unit;
@@ -24,10 +22,12 @@ mod serial_unit;
 mod start;
 mod watchdog;
 
-#[cfg(has_can)]
-pub use can_unit::{CanHalves, CanLine};
+#[cfg(all(family = "stm32f4", has_can))]
+pub use bxcan as can;
 pub use chip::{Chip, Parts};
 pub use description::{CORE_RATE, NAME};
+#[cfg(all(family = "stm32g4", has_can))]
+pub use fdcan as can;
 pub use gpio::{Output, Pin};
 pub use serial_unit::wake as wake_serial;
 pub use start::{Started, start};

@@ -51,19 +51,16 @@ pub fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Star
 impl Started {
     /// Opens the CAN line. Its timing holds for the PLL only: without it nothing is sent or received.
     #[cfg(has_can)]
-    pub fn open_can(
-        &self,
-    ) -> (<super::CanLine as super::CanHalves>::Receiver, <super::CanLine as super::CanHalves>::Sender) {
-        use super::CanHalves;
-        if let (Some(pins), true) = (description::CAN, self.clock.source != ClockSource::Failed) {
-            let [send, receive] = pins.map(|pin| clocked_pin(&self.clocks, pin));
+    pub fn open_can(&self) -> (super::can::Receiver, super::can::Sender) {
+        if self.clock.source != ClockSource::Failed {
+            let [send, receive] = description::CAN.map(|pin| clocked_pin(&self.clocks, pin));
             send.0.make_fast();
             send.0.set_function(send.1);
             // Without a transceiver the bus is silent instead of held.
             receive.0.pull_up();
             receive.0.set_function(receive.1);
         }
-        super::CanLine::open(&self.clocks)
+        super::can::open(&self.clocks)
     }
 
     /// Opens the serial line to the host.

@@ -114,8 +114,6 @@ pub struct SpiSlave {
 pub struct Can {
     /// Peripheral, such as CAN1 or FDCAN1.
     pub unit: &'static str,
-    /// Clock of the bit timing while the PLL runs [Hz].
-    pub clock: u32,
     /// Data to the transceiver.
     pub send: Alternate,
     /// Data from the transceiver.
@@ -239,6 +237,10 @@ const ENCODER_KEYS: [[&str; 7]; 2] = [
     ],
 ];
 
+/// Largest deviation of an internal oscillator at room temperature [ppm]: STM32F405, data sheet DS8626; the other chips
+/// are closer.
+const INTERNAL_OSCILLATOR_PPM: u32 = 10_000;
+
 impl Board {
     /// Two parts of the flash that keep the observer's memory.
     pub fn slots(&self) -> [Slot; 2] {
@@ -253,6 +255,28 @@ impl Board {
     /// RAM available to the statics of an image; the stack has the rest [byte].
     pub fn static_bytes(&self) -> u32 {
         self.ram_bytes - MIN_STACK_BYTES
+    }
+
+    /// CAN line that the firmware has a driver for, or the reason why there is none.
+    pub fn can_line(&self) -> Result<&Can, &'static str> {
+        let can = self.can.as_ref().ok_or("its board file has no [can]")?;
+        self.chip.has_can_driver().then_some(can).ok_or("the firmware has no driver for its chip's CAN")
+    }
+
+    /// Sentence about a bit rate that is less accurate than CAN allows, since the board has no crystal and no external
+    /// clock; `None` if the clock is good enough, or without CAN.
+    pub fn inaccurate_can_clock(&self) -> Option<String> {
+        let can = self.can.as_ref().filter(|_| self.clock == ExternalClock::None)?;
+        let tolerance = can.timing.tolerance_ppm();
+        (tolerance < INTERNAL_OSCILLATOR_PPM).then(|| {
+            format!(
+                "the chip's own oscillator is up to {} % off at room temperature, and CAN at {} bit/s allows {:.1} %: calibrate \
+                 the oscillator, or lower `bitrate`",
+                f64::from(INTERNAL_OSCILLATOR_PPM) / 1e4,
+                can.bitrate,
+                f64::from(tolerance) / 1e4
+            )
+        })
     }
 
     /// Core clock [Hz].

@@ -1,6 +1,6 @@
 //! CAN line of a board: peripheral, pins, bit rates, and the transceiver that the board has or has not.
 
-use crate::bit_timing::BitTiming;
+use crate::bit_timing::{BitTiming, TimingLimits};
 use crate::board::{Can, Transceiver};
 use crate::chip::{CanUnit, Part};
 use crate::pins::{Pins, report_unknown_unit};
@@ -32,8 +32,8 @@ pub(crate) fn read(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Op
         None => Transceiver::Unknown,
     };
     let unit = unit?;
-    let timing = timing(section, unit, bitrate, SAMPLE_POINT, "bitrate", Some(unit.timing));
-    let data = match data_bitrate {
+    let timing = timing(section, unit, bitrate, &FIRST);
+    let data_timing = match data_bitrate {
         Some(rate) if rate < bitrate => {
             let message = format!("`data_bitrate` of {rate} bit/s is below `bitrate` of {bitrate} bit/s");
             let help = "data at the second bit rate is at least as fast as the arbitration";
@@ -45,13 +45,12 @@ pub(crate) fn read(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Op
     };
     Some(Can {
         unit: unit.name,
-        clock: unit.clock,
         send: send?,
         receive: receive?,
         bitrate,
         data_bitrate,
         timing: timing?,
-        data_timing: data,
+        data_timing,
         transceiver,
     })
 }
@@ -62,29 +61,47 @@ fn timing_of_data(section: &Section<'_>, unit: &CanUnit, rate: u32) -> Option<Bi
         section.notes.error(section.place("data_bitrate"), message, "leave `data_bitrate` out");
         return None;
     }
-    timing(section, unit, rate, DATA_SAMPLE_POINT, "data_bitrate", unit.data_timing)
+    timing(section, unit, rate, &SECOND)
 }
 
-fn timing(
-    section: &Section<'_>,
-    unit: &CanUnit,
-    rate: u32,
+/// Requirements on a bit rate.
+struct Wanted {
+    key: &'static str,
+    /// Sample point [thousandths of a bit].
     sample_point: u32,
-    key: &str,
-    limits: Option<crate::bit_timing::TimingLimits>,
-) -> Option<BitTiming> {
-    let found = limits.and_then(|limits| BitTiming::new(unit.clock, rate, sample_point, limits));
+    limits: fn(&CanUnit) -> Option<TimingLimits>,
+    /// Prescalers in the words of an error.
+    prescalers: &'static str,
+}
+
+const FIRST: Wanted = Wanted {
+    key: "bitrate",
+    sample_point: SAMPLE_POINT,
+    limits: |unit| Some(unit.timing),
+    prescalers: "no prescaler gives",
+};
+const SECOND: Wanted = Wanted {
+    key: "data_bitrate",
+    sample_point: DATA_SAMPLE_POINT,
+    limits: |unit| unit.data_timing,
+    prescalers: "neither prescaler that the transmitter delay compensation allows, 1 and 2, gives",
+};
+
+fn timing(section: &Section<'_>, unit: &CanUnit, rate: u32, wanted: &Wanted) -> Option<BitTiming> {
+    let Wanted { key, sample_point, limits, prescalers } = wanted;
+    let limits = limits(unit)?;
+    let of = |rate| BitTiming::new(unit.clock, rate, *sample_point, limits);
+    let found = of(rate);
     if found.is_none() {
         let (name, mega) = (unit.name, f64::from(unit.clock) / 1e6);
         let message = format!(
-            "`{key}` of {rate} bit/s cannot be made from the {mega} MHz of {name}: no prescaler gives whole quanta with \
-             the sample point within 5 % of {} %",
-            f64::from(sample_point) / 10.0
+            "`{key}` of {rate} bit/s cannot be made from the {mega} MHz of {name}: {prescalers} whole quanta with the \
+             sample point within 5 % of {} %",
+            f64::from(*sample_point) / 10.0
         );
         let usual = [5_000_000, 2_000_000, 1_000_000, 500_000, 250_000, 125_000];
-        let fits =
-            |rate: &u32| limits.is_some_and(|limits| BitTiming::new(unit.clock, *rate, sample_point, limits).is_some());
-        let able: Vec<String> = usual.iter().filter(|rate| fits(rate)).map(u32::to_string).collect();
+        let able: Vec<String> =
+            usual.into_iter().filter(|rate| of(*rate).is_some()).map(|rate| rate.to_string()).collect();
         let place = if section.has(key) { section.place(key) } else { section.header.clone() };
         section.notes.error(place, message, format!("rates that can be made: {}", able.join(", ")));
     }

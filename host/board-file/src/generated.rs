@@ -79,22 +79,23 @@ pub fn rust_source(board: &Board) -> String {
                 .map(|slave| format!("[{}]", [slave.select, slave.clock, slave.out, slave.input].map(pin).join(", "))),
         ),
     );
-    constant("Pins of the CAN line: send, receive.", "CAN", "Option<[(u8, u8, u8); 2]>", {
-        option_source(board.can.map(|can| format!("[{}, {}]", pin(can.send), pin(can.receive))))
-    });
-    let timing = |BitTiming { prescaler, before, after, jump }| format!("({prescaler}, {before}, {after}, {jump})");
-    constant(
-        "Bit timing of CAN: cycles of a quantum, quanta before and after the sample point, jump width.",
-        "CAN_TIMING",
-        "Option<(u32, u32, u32, u32)>",
-        option_source(board.can.map(|can| timing(can.timing))),
-    );
-    constant(
-        "Timing of the second bit rate of CAN, in the same form.",
-        "CAN_DATA_TIMING",
-        "Option<(u32, u32, u32, u32)>",
-        option_source(board.can.and_then(|can| can.data_timing).map(timing)),
-    );
+    if let Some(can) = &board.can {
+        let pins = format!("[{}, {}]", pin(can.send), pin(can.receive));
+        constant("Pins of the CAN line: send, receive.", "CAN", "[(u8, u8, u8); 2]", pins);
+        let timing = |BitTiming { prescaler, before, after, jump }| format!("({prescaler}, {before}, {after}, {jump})");
+        constant(
+            "Bit timing of CAN: cycles of a quantum, quanta before and after the sample point, jump width.",
+            "CAN_TIMING",
+            "(u32, u32, u32, u32)",
+            timing(can.timing),
+        );
+        constant(
+            "Timing of the second bit rate of CAN, in the same form.",
+            "CAN_DATA_TIMING",
+            "Option<(u32, u32, u32, u32)>",
+            option_source(can.data_timing.map(timing)),
+        );
+    }
     constant("Output that holds the supply: port, number, true if high is on.", "SUPPLY", OUTPUT, output(board.supply));
     constant("Output that switches the motor on, in the same form.", "ENABLE", OUTPUT, output(board.enable));
     constant("Status light, in the same form.", "LIGHT", OUTPUT, output(board.light));

@@ -550,6 +550,28 @@ fn can_rates_are_exact() {
     refused(&fast, "CAN1 has no second bit rate: it is classical CAN", "2_000_000", "leave `data_bitrate` out");
 }
 
+/// FDCAN compensates the transmitter's delay with a prescaler of 1 or 2 only: 2 Mbit/s from 170 MHz needs 5.
+#[test]
+fn second_bit_rate_needs_small_prescaler() {
+    let file = board_file::preset("nucleo-g474re").expect("a preset");
+    let can = good(file).can.expect("it has one");
+    assert_eq!(can.data_timing.expect("5 Mbit/s").prescaler, 1);
+    let slow = file.replace("data_bitrate = 5_000_000", "data_bitrate = 2_000_000");
+    let message = "`data_bitrate` of 2000000 bit/s cannot be made from the 170 MHz of FDCAN1: neither prescaler that the \
+                   transmitter delay compensation allows, 1 and 2, gives whole quanta with the sample point within 5 % of \
+                   80 %";
+    refused(&slow, message, "2_000_000", "5000000");
+}
+
+/// Only a board with a crystal or an external clock is accurate enough for CAN at 1 Mbit/s.
+#[test]
+fn can_on_internal_oscillator_warned_of() {
+    let of = |name: &str| good(board_file::preset(name).expect("a preset")).inaccurate_can_clock();
+    assert_eq!((of("nucleo-g474re"), of("feather-f405")), (None, None));
+    let sentence = of("moteus-r4").expect("a sentence");
+    assert!(sentence.contains("1 % off") && sentence.contains("allows 0.6 %"), "{sentence}");
+}
+
 /// Two SPI encoders may share clock and data, but no select.
 #[test]
 fn encoders_share_bus_not_select() {

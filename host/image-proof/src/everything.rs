@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 use link::messages::Role;
 
 use crate::roles;
+use crate::tick::Exception;
 use crate::{board_model, bound, costs, same_bits, sizes, tick, worst_case};
 use board::device::board::{Board, Chip};
 use board::device::image;
@@ -18,7 +19,6 @@ use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
-use virtual_drive::maker::{MOTEUS, ODRIVE3};
 
 /// Runs all checks; the first failure ends them.
 pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
@@ -43,7 +43,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             progress.stage(&format!("building the image of {what}"));
             let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, false, &say)?;
             let (flash, ram) = (image.flash_bytes, image.ram_bytes);
-            let reach = tick::reach(&image.elf)?;
+            let reach = tick::reach(&image.elf, Exception::SysTick)?;
             tick::check(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
             let (functions, stack) = (reach.functions, tick::stack(&reach));
             sizes::check(board.chip(), image::role_name(role), &image)?;
@@ -62,17 +62,30 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
         }
-        if is_first && board.description.can.is_some() && board.chip().has_can() && image::has_room_for_all(board) {
+        if let (true, Ok(can)) = (is_first, board.description.can_line()) {
             progress.stage("building the image of a drive on CAN");
             let joint = image::preset_file("q1");
-            let maker = if board.description.can.is_some_and(|can| can.is_flexible()) { MOTEUS } else { ODRIVE3 };
-            let drive = image::DriveOnBus { maker, id: 1 };
+            let drive = image::DriveOnBus { maker: image::usual_maker(can), id: 1 };
             let rate = control_rate(Role::Loop);
             let built = image::build_drive(&toolchain, &joint, board, &drive, rate, false, &say)?;
-            sizes::check(board.chip(), "drive", &built)?;
-            let bytes = built.flash_bytes;
+            sizes::check(board.chip(), image::DRIVE, &built)?;
+            // The timer's interrupt requests the tick, which is the handler of PendSV.
+            let mut found = Vec::new();
+            for exception in [Exception::SysTick, Exception::PendSv] {
+                let reach = tick::reach(&built.elf, exception)?;
+                let place = format_args!("image of a drive on CAN for {}", board.name());
+                tick::check(&reach).map_err(|failure| failure.while_doing(place))?;
+                found.push((reach.functions, tick::stack(&reach)));
+            }
+            let functions: usize = found.iter().map(|(functions, _)| functions).sum();
+            let stack: u32 = found.iter().map(|(_, stack)| stack).sum();
+            let (flash, ram) = (built.flash_bytes, built.ram_bytes);
             progress.clear();
-            output::print(&format!("ok       image of a drive on CAN for {}: {bytes} B of flash\n", board.name()))?;
+            output::print(&format!(
+                "ok       image of a drive on CAN for {}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, \
+                 none can panic, at most {stack} B of stack\n",
+                board.name()
+            ))?;
         }
         if !is_first {
             continue;

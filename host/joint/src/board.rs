@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use board::device::board::Board as TargetBoard;
 use board::device::prediction::ORIGIN;
-use board_file::{BitTiming, Board, Can, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
+use board_file::{BitTiming, Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
 use clap::ValueEnum;
 use parameters::JointParameters;
 use report::document::{Sheet, terminal};
@@ -76,13 +76,11 @@ fn add_roles(page: &mut Sheet, board: &TargetBoard, joint: &JointParameters) {
     page.heading(&format!("Roles for {}, predicted: no image is built", joint.name));
     for role in ImageRole::value_variants() {
         let Some(value) = role.to_possible_value() else { continue };
-        let verdict = match role {
-            ImageRole::SpiObserver if !board.has_spi_slave() => {
+        let verdict = match (role, board.description.can_line()) {
+            (ImageRole::SpiObserver, _) if !board.has_spi_slave() => {
                 "not on this board: its file has no [spi_slave]".to_owned()
             }
-            ImageRole::Drive if board.description.can.is_none() => {
-                "not on this board: its file has no [can]".to_owned()
-            }
+            (ImageRole::Drive, Err(why)) => format!("not on this board: {why}"),
             _ => role.predict(joint, board, role.default_rate(joint, board)).to_string(),
         };
         page.row(value.get_name(), verdict);
@@ -127,7 +125,7 @@ fn board_page(board: &Board) -> Sheet {
             }
         },
     );
-    can_rows(&mut page, board.can.as_ref());
+    can_rows(&mut page, board);
     let without_use = board.unused_line_pins();
     if !without_use.is_empty() {
         page.heading("Not used by any image");
@@ -143,8 +141,8 @@ fn board_page(board: &Board) -> Sheet {
 }
 
 /// Pins, rates and transceiver of the CAN line.
-fn can_rows(page: &mut Sheet, can: Option<&Can>) {
-    let Some(can) = can else {
+fn can_rows(page: &mut Sheet, board: &Board) {
+    let Some(can) = &board.can else {
         page.row("CAN", "none");
         return;
     };
@@ -154,6 +152,9 @@ fn can_rows(page: &mut Sheet, can: Option<&Can>) {
         page.row("CAN data bit rate", bit_rate(rate, &timing));
     }
     page.row("CAN transceiver", can.missing_transceiver().unwrap_or_else(|| "on the board".to_owned()));
+    if let Some(sentence) = board.inaccurate_can_clock() {
+        page.row("CAN clock", sentence);
+    }
 }
 
 fn bit_rate(rate: u32, timing: &BitTiming) -> String {

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use board::device::board::Board;
 use board::device::image;
-use board::device::tick_time::RateCheck;
 use joint_file::{named, warnings};
 use report::failure::{Failure, Outcome};
 use report::output;
@@ -59,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     progress.clear();
     let summary = summary?;
     output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])?;
-    RateCheck::new(parameters, board, role).check(rate)?;
+    arguments.role.rate_check(parameters, board).check(rate)?;
     let accuracy = &summary.verdicts.accuracy;
     if arguments.accuracy.is_some() && !accuracy.reached {
         let help = match accuracy.rate_that_reaches_it_Hz {

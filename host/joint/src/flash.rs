@@ -17,11 +17,11 @@ use crate::image;
 
 The board must be named: the pins of one board are gate inputs of another.")]
 pub struct Arguments {
-    #[command(flatten)]
-    image: image::Image,
     /// Board to flash: a name of boards/, or the path of a board file
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse)]
     board: Option<Board>,
+    #[command(flatten)]
+    image: image::Image,
     /// Writes over USB by dfu-util; the chip's own loader runs if the board starts with BOOT0 high
     #[arg(long)]
     dfu: bool,

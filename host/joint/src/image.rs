@@ -3,19 +3,20 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use link::messages::Role;
 
 use board::device::board::Board;
 use board::device::image;
 use board::device::prediction::{ORIGIN, Prediction};
-use board::device::tick_time;
+use board::device::tick_time::{self, RateCheck};
 use board::device::toolchain::Toolchain;
 use joint_file::{named, warnings};
 use parameters::JointParameters;
-use report::failure::Outcome;
+use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 use report::{interruption, output};
-use virtual_drive::maker::{MOTEUS, NAMES, Name, ODRIVE3};
+use virtual_drive::maker::{NAMES, Name, ODRIVE3};
 
 /// Arguments of `joint image`.
 #[derive(Debug, clap::Args)]
@@ -28,11 +29,11 @@ use virtual_drive::maker::{MOTEUS, NAMES, Name, ODRIVE3};
   joint image joints/l1.toml --board nucleo-h743zi
   joint image --board my_board.toml           for a board of your own")]
 pub struct Arguments {
-    #[command(flatten)]
-    image: Image,
     /// Board that the image is for: a name of boards/, or the path of a board file
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
     board: Board,
+    #[command(flatten)]
+    image: Image,
 }
 
 /// Contents of an image, besides its board.
@@ -45,17 +46,17 @@ pub struct Image {
     /// Role of the board
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
+    /// Maker of the drive in role drive [default: moteus on a board with a second bit rate, else odrive3]
+    #[arg(long, value_name = "MAKER", value_parser = maker())]
+    drive: Option<Name>,
+    /// Identifier of the drive on its bus in role drive [default: 1]
+    #[arg(long, value_name = "ID")]
+    id: Option<u8>,
     /// Step rate in Hz; the control rate for every role but plant [default: 20000 for plant, 5000 for spi-observer,
     /// else 10000, or the next lower rate that the chip has time for]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
-    /// Maker of the drive in role drive [default: odrive3, or moteus where the board has CAN FD]
-    #[arg(long, value_name = "MAKER", value_parser = maker)]
-    drive: Option<Name>,
-    /// Identifier of the drive on its bus in role drive
-    #[arg(long, value_name = "ID", default_value_t = 1)]
-    id: u8,
-    /// Builds even if the worst-case tick exceeds the period; the board reports `forced` in its identity
+    /// Builds even if the worst-case tick exceeds the period; every role but drive reports `forced` in its identity
     #[arg(long)]
     force: bool,
 }
@@ -76,10 +77,10 @@ pub enum ImageRole {
     Drive,
 }
 
-/// Maker of a drive by its word.
-fn maker(word: &str) -> Result<Name, String> {
-    let known = NAMES.into_iter().find(|name| name.word == word);
-    known.ok_or_else(|| format!("write one of {}", NAMES.map(|name| name.word).join(", ")))
+/// Parser of a maker's word.
+fn maker() -> impl TypedValueParser<Value = Name> {
+    PossibleValuesParser::new(NAMES.map(|name| name.word))
+        .try_map(|word| Name::from_word(&word).ok_or("there is no drive of this maker"))
 }
 
 impl ImageRole {
@@ -103,10 +104,40 @@ impl ImageRole {
         }
     }
 
+    /// Check of the rates of a joint on a board.
+    pub fn rate_check<'a>(self, joint: &'a JointParameters, board: &'a Board) -> RateCheck<'a> {
+        match self {
+            Self::Drive => RateCheck::drive(joint, board),
+            _ => RateCheck::new(joint, board, self.role()),
+        }
+    }
+
     /// Predicts whether an image in this role fits a board at a rate.
     pub fn predict(self, joint: &JointParameters, board: &Board, rate: u32) -> Prediction {
-        let word = self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
-        Prediction::new(board, joint, &word, self.role(), rate)
+        Prediction::new(board, joint, &self.word(), self.role(), rate)
+    }
+
+    /// Word of the command line.
+    fn word(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+impl Image {
+    /// Rejects options that have no effect in the role.
+    fn check_options(&self) -> Outcome<()> {
+        let given = [("--drive", self.drive.is_some()), ("--id", self.id.is_some())];
+        match given.into_iter().find(|(_, is_given)| *is_given && self.role != ImageRole::Drive) {
+            None => Ok(()),
+            Some((option, _)) => Err(Failure::new(format!("{option} is for the role drive, not {}", self.role.word()))
+                .with_help(format!("add `--role drive`, or leave {option} out"))),
+        }
+    }
+
+    /// Drive of the role `drive`, with the defaults of a board.
+    fn drive_on(&self, board: &Board) -> image::DriveOnBus {
+        let usual = board.description.can.as_ref().map_or(ODRIVE3, image::usual_maker);
+        image::DriveOnBus { maker: self.drive.unwrap_or(usual), id: self.id.unwrap_or(1) }
     }
 }
 
@@ -119,6 +150,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 
 /// Builds an image and shows the progress.
 pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
+    arguments.check_options()?;
     let loaded = named::load(&arguments.file)?;
     warnings::print(&loaded);
     let file = image::joint_file(&arguments.file, &loaded.name);
@@ -136,9 +168,7 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
         match role {
             ImageRole::SpiObserver => image::build_spi_slave(&toolchain, &file, board, rate, arguments.force, &say),
             ImageRole::Drive => {
-                let has_data_rate = board.description.can.is_some_and(|can| can.data_bitrate.is_some());
-                let usual = if has_data_rate { MOTEUS } else { ODRIVE3 };
-                let drive = image::DriveOnBus { maker: arguments.drive.unwrap_or(usual), id: arguments.id };
+                let drive = arguments.drive_on(board);
                 image::build_drive(&toolchain, &file, board, &drive, rate, arguments.force, &say)
             }
             _ => image::build_image(&toolchain, &file, board, role.role(), rate, arguments.force, &say),

@@ -39,6 +39,8 @@ pub(super) const FACTS: Facts = Facts {
         ImageSize { role: "observer", flash: 173_072, ram: 26_412 },
         ImageSize { role: "loop", flash: 216_532, ram: 24_596 },
         ImageSize { role: "spi-observer", flash: 110_436, ram: 3_300 },
+        // ODrive 3.6.
+        ImageSize { role: "drive", flash: 110_024, ram: 5_312 },
     ],
     variants: &[
         Variant { name: "STM32F405RG", flash_kib: &[512, 1024], packages: &[Package { letter: 'T', pins: LQFP64 }] },

@@ -108,7 +108,8 @@ pub(crate) struct CanUnit {
 }
 
 impl CanUnit {
-    /// FDCAN: RM0440 44.4.7 and 44.4.3, RM0433 56.5.7 and 56.5.3.
+    /// FDCAN: RM0440 44.4.7 and 44.4.3, RM0433 56.5.7 and 56.5.3. DBTP.DBRP can divide by up to 32, but by 1 or 2 only
+    /// while the transmitter delay is compensated (DBTP.TDC), as the driver has it.
     pub const fn flexible(
         name: &'static str,
         clock: u32,
@@ -116,7 +117,7 @@ impl CanUnit {
         receive: &'static [Alternate],
     ) -> Self {
         let timing = TimingLimits { prescaler: 512, before: 256, after: 128, jump: 128 };
-        let data = TimingLimits { prescaler: 32, before: 32, after: 16, jump: 16 };
+        let data = TimingLimits { prescaler: 2, before: 32, after: 16, jump: 16 };
         Self { name, clock, timing, data_timing: Some(data), send, receive }
     }
 

@@ -25,13 +25,14 @@ pub(super) const FACTS: Facts = Facts {
     // SRAM1 and SRAM2; the 10 KiB of CCM that follow are for code.
     ram_kib: 22,
     slots,
-    // The plant is linked with less inlining. The others were linked for the STM32G474 only; with less inlining they
-    // need less flash.
+    // Plant and drive (ODrive 3.6) are linked with less inlining. The others were linked for the STM32G474 only; with
+    // less inlining they need less flash.
     images: &[
         ImageSize { role: "plant", flash: 123_636, ram: 10_532 },
         g474::IMAGES[1],
         g474::IMAGES[2],
         g474::IMAGES[3],
+        ImageSize { role: "drive", flash: 108_012, ram: 5_312 },
     ],
     variants: &[
         Variant {

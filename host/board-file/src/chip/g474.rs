@@ -60,11 +60,13 @@ pub(super) const PLL: PllLimits = PllLimits {
     ranges: &[],
 };
 
-pub(super) const IMAGES: [ImageSize; 4] = [
+pub(super) const IMAGES: [ImageSize; 5] = [
     ImageSize { role: "plant", flash: 127_180, ram: 10_532 },
     ImageSize { role: "observer", flash: 173_192, ram: 26_164 },
     ImageSize { role: "loop", flash: 216_292, ram: 24_348 },
     ImageSize { role: "spi-observer", flash: 111_464, ram: 3_300 },
+    // moteus.
+    ImageSize { role: "drive", flash: 114_296, ram: 5_240 },
 ];
 
 /// Slots: the last two pages of 4 KiB of the single-bank layout. In the dual-bank layout each is two pages of 2 KiB, of

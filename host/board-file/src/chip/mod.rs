@@ -93,7 +93,7 @@ impl Chip {
     }
 
     /// Returns whether the firmware has a driver for the chip's CAN.
-    pub fn has_can(self) -> bool {
+    pub fn has_can_driver(self) -> bool {
         self != Self::Stm32h743
     }
 

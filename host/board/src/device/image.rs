@@ -4,18 +4,19 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use board_file::Can;
 use joint_file::named;
 use link::messages::Role;
 use model_core::controller::design::ControlRequest;
 use object::{Object, ObjectSegment};
 use parameters::JointParameters;
 use sha2::{Digest, Sha256};
-use virtual_drive::maker::Name;
+use virtual_drive::maker::{MOTEUS, Name, ODRIVE3};
 
 use super::Say;
 use super::board::Board;
 use super::compile::{FIRMWARE_PACKAGE, PROFILE, compile, write_atomically};
-pub use super::role::role_name;
+pub use super::role::{DRIVE, role_name};
 use super::sources::{self, hexadecimal};
 use super::tick_time::{RateCheck, default_control_rate};
 use super::toolchain::{TARGET_FLAGS, Toolchain};
@@ -30,8 +31,9 @@ pub const CONTROL_RATE: u32 = 10_000;
 pub const SPI_RATE: u32 = 5000;
 /// Binary of the SPI slave.
 const SPI_BINARY: &str = "spi_observer";
-/// Binary of a drive on CAN, and the feature that it needs.
-const DRIVE_BINARY: &str = "drive";
+/// Binary of a drive on CAN.
+const DRIVE_BINARY: &str = DRIVE;
+/// Feature that the binary of a drive needs.
 const DRIVE_FEATURE: &str = ",can";
 /// Inline threshold for boards with little flash. A lower level of optimisation would leave checks that can panic in
 /// the loops of the tick.
@@ -71,22 +73,32 @@ pub fn build_image(
     say: Say<'_>,
 ) -> Outcome<Image> {
     let joint_file = absolute_path(joint_file)?;
-    let forced = check_fit(&joint_file, board, role, tick_rate, forced, say)?;
+    let forced = check_fit(&joint_file, board, Some(role), tick_rate, forced, say)?;
     let place = file_name(&joint_file, board, role_name(role), tick_rate);
     let control = Control { forced, ..Control::with_defaults(tick_rate) };
     let what = What { binary: binary_name(role), control: &control, drive: None };
     build(toolchain, [&joint_file; 2], board, &what, &place, say)
 }
 
-/// Rejects a joint file that the board cannot be built for. Returns whether the image needs `forced`.
-fn check_fit(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool, say: Say<'_>) -> Outcome<bool> {
+/// Rejects a joint file that the board cannot be built for; `role` is `None` for the role `drive`. Returns whether the
+/// image needs `forced`.
+fn check_fit(
+    joint_file: &Path,
+    board: &Board,
+    role: Option<Role>,
+    rate: u32,
+    forced: bool,
+    say: Say<'_>,
+) -> Outcome<bool> {
     let parameters = named::load(joint_file)?.file.parameters;
-    let forced = RateCheck::new(&parameters, board, role).check_unless_forced(rate, forced)?;
+    let rate_check = match role {
+        Some(role) => RateCheck::new(&parameters, board, role),
+        None => RateCheck::drive(&parameters, board),
+    };
+    let forced = rate_check.check_unless_forced(rate, forced)?;
     if forced {
-        say(&format!(
-            "built by force: the worst tick at {rate} Hz takes too long for {}; the board reports `forced` in its hello",
-            board.name()
-        ));
+        let report = if role.is_some() { "; the board reports `forced` in its identity" } else { "" };
+        say(&format!("built by force: the worst tick at {rate} Hz takes too long for {}{report}", board.name()));
     }
     Ok(forced)
 }
@@ -137,7 +149,7 @@ pub fn build_control_image(
     let [truth_file, told_file] = ["truth", "told"].map(|which| folder.join(format!("{name}-{which}.toml")));
     write_atomically(&folder, &truth_file, truth.as_bytes())?;
     write_atomically(&folder, &told_file, told.as_bytes())?;
-    let forced = check_fit(&truth_file, board, role, control.rate, control.forced, say)?;
+    let forced = check_fit(&truth_file, board, Some(role), control.rate, control.forced, say)?;
     let control = &Control { forced, ..*control };
     let place = format!("control-{name}-{}-{}.elf", board.name(), role_name(role));
     let what = What { binary: binary_name(role), control, drive: None };
@@ -165,7 +177,7 @@ pub fn build_spi_slave(
     }
     let joint_file = absolute_path(joint_file)?;
     let control = Control {
-        forced: check_fit(&joint_file, board, Role::Observer, rate, forced, say)?,
+        forced: check_fit(&joint_file, board, Some(Role::Observer), rate, forced, say)?,
         ..Control::with_defaults(rate)
     };
     let place = file_name(&joint_file, board, SPI_BINARY, rate);
@@ -198,11 +210,7 @@ pub fn build_drive(
     say: Say<'_>,
 ) -> Outcome<Image> {
     let DriveOnBus { maker, id } = *drive;
-    let can = board.description.can.as_ref().ok_or_else(|| no_can(board))?;
-    if !board.chip().has_can() {
-        let message = format!("{} is no drive on CAN: the firmware has no driver for its chip's CAN", board.name());
-        return Err(Failure::new(message).with_help("use a board with an STM32F405 or an STM32G4"));
-    }
+    let can = board.description.can_line().map_err(|why| no_drive(board, why))?;
     if maker.is_flexible && can.data_bitrate.is_none() {
         let why = match can.is_flexible() {
             true => "its board file has no `data_bitrate` in [can]".to_owned(),
@@ -215,26 +223,30 @@ pub fn build_drive(
         return Err(Failure::new(format!("identifier {id} is out of range for a {} drive", maker.word))
             .with_help(format!("write 1 to {}", maker.max_id)));
     }
-    if let Some(sentence) = can.missing_transceiver() {
+    for sentence in [can.missing_transceiver(), board.description.inaccurate_can_clock()].into_iter().flatten() {
         say(&format!("{}: {sentence}", board.name()));
     }
     let joint_file = absolute_path(joint_file)?;
-    let control = Control {
-        // The role `loop` runs the same joint beside more work.
-        forced: check_fit(&joint_file, board, Role::Loop, rate, forced, say)?,
-        ..Control::with_defaults(rate)
-    };
+    let control =
+        Control { forced: check_fit(&joint_file, board, None, rate, forced, say)?, ..Control::with_defaults(rate) };
     let place = file_name(&joint_file, board, &format!("{DRIVE_BINARY}-{}-{id}", maker.word), rate);
     let what = What { binary: DRIVE_BINARY, drive: Some(*drive), control: &control };
     build(toolchain, [&joint_file; 2], board, &what, &place, say)
 }
 
-/// Failure of a board without CAN.
-fn no_can(board: &Board) -> Failure {
-    let message = format!("{} is no drive on CAN: its board file has no [can]", board.name());
+/// Maker of a drive on a CAN line if none is named.
+pub fn usual_maker(can: &Can) -> Name {
+    if can.data_bitrate.is_some() { MOTEUS } else { ODRIVE3 }
+}
+
+/// Failure of a board that cannot be a drive on CAN.
+fn no_drive(board: &Board, why: &str) -> Failure {
     let presets = Board::presets().unwrap_or_default();
-    let able: Vec<&str> = presets.iter().filter(|board| board.description.can.is_some()).map(Board::name).collect();
-    Failure::new(message).with_help(format!("use one of {}, or add [can] to the file", able.join(", ")))
+    let able: Vec<&str> =
+        presets.iter().filter(|board| board.description.can_line().is_ok()).map(Board::name).collect();
+    let add = if board.description.can.is_none() { ", or add [can] to the file" } else { "" };
+    Failure::new(format!("{} is no drive on CAN: {why}", board.name()))
+        .with_help(format!("use one of {}{add}", able.join(", ")))
 }
 
 /// Absolute path of a joint file.
@@ -411,6 +423,22 @@ mod tests {
     #[test]
     fn default_tick_rate_divides_every_clock() {
         assert!(Chip::ALL.iter().all(|chip| chip.core_rate().is_multiple_of(DEFAULT_TICK_RATE)));
+    }
+
+    /// A board that cannot be a drive on CAN is refused with the reason, and no such board is offered.
+    #[test]
+    fn boards_without_drive_not_offered() {
+        let failure = |name: &str| {
+            let board = Board::load(name).unwrap();
+            no_drive(&board, board.description.can_line().expect_err(name))
+        };
+        for (name, why) in [("feather-f405", "no [can]"), ("nucleo-h743zi", "no driver for its chip's CAN")] {
+            let failure = failure(name);
+            let help = failure.help().unwrap();
+            assert!(failure.message().contains(why), "{failure}");
+            assert!(help.contains("odrive-3.6, olimex-h405") && !help.contains(name), "{help}");
+            assert_eq!(help.contains("add [can]"), name == "feather-f405", "{help}");
+        }
     }
 
     /// Only the linker's assertion about size becomes the message.

@@ -115,12 +115,13 @@ mod tests {
         }
     }
 
-    /// A chip with 128 KiB of flash has room for plant and SPI slave only.
+    /// A chip with 128 KiB of flash has room for plant, SPI slave and drive only.
     #[test]
-    fn small_chip_fits_plant_and_spi_slave() {
+    fn small_chip_fits_small_roles() {
         let on = |image: &str, role: Role, rate: u32| predicted("b-g431b-esc1", image, role, rate);
         assert!(on("plant", Role::Plant, 20_000).has_room());
         assert!(on("spi-observer", Role::Observer, 5000).has_room());
+        assert!(on("drive", Role::Loop, 5000).has_room());
         let observer = on("observer", Role::Observer, 10_000);
         assert!(!observer.fits());
         let said = observer.to_string();

@@ -2,6 +2,9 @@
 
 use link::messages::Role;
 
+/// Name of the role behind which no host stands: a drive on CAN.
+pub const DRIVE: &str = "drive";
+
 /// Name of a role.
 pub fn role_name(role: Role) -> &'static str {
     match role {

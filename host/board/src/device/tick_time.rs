@@ -8,7 +8,7 @@ use model_core::gears::design::{DesignError, Effort, Processor, StepSize, Subste
 use parameters::JointParameters;
 
 use super::board::Board;
-use super::role::role_name;
+use super::role::{DRIVE, role_name};
 use report::failure::{Failure, Outcome};
 
 /// Worst-case instructions of a tick of the role `observer`. The counting program checks this bound and the next.
@@ -22,9 +22,10 @@ const OBSERVER_SHARE: f64 = 0.75;
 const COMMON_RATES: [u32; 5] = [10_000, 8000, 5000, 4000, 2000];
 /// Highest rate considered [Hz].
 const HIGHEST_RATE: u32 = 500_000;
-/// Help about building an image in spite of the limit.
+/// Help about building an image in spite of the limit, for a role with a host and for the role `drive`.
 const FORCE_HELP: &str =
-    "`--force` builds the image anyway; expect overruns and late torques, and `forced` in the board's hello";
+    "`--force` builds the image anyway; expect overruns and late torques, and `forced` in the board's identity";
+const FORCE_DRIVE_HELP: &str = "`--force` builds the image anyway; expect late frames and a joint that runs too slowly";
 
 /// Reason for which a rate is rejected.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +54,7 @@ pub struct RateCheck<'a> {
     joint: &'a JointParameters,
     board: &'a Board,
     role: Role,
+    is_drive: bool,
     processor: Processor,
     step_size: StepSize,
 }
@@ -60,7 +62,12 @@ pub struct RateCheck<'a> {
 impl<'a> RateCheck<'a> {
     /// Joint whose step is fitted to the board.
     pub fn new(joint: &'a JointParameters, board: &'a Board, role: Role) -> Self {
-        Self { joint, board, role, processor: board.processor(), step_size: StepSize::new(joint) }
+        Self { joint, board, role, is_drive: false, processor: board.processor(), step_size: StepSize::new(joint) }
+    }
+
+    /// Joint behind a drive on CAN, whose tick is bounded by that of the role `loop`: the same joint beside more work.
+    pub fn drive(joint: &'a JointParameters, board: &'a Board) -> Self {
+        Self { is_drive: true, ..Self::new(joint, board, Role::Loop) }
     }
 
     /// Joint that the board simulates.
@@ -111,8 +118,11 @@ impl<'a> RateCheck<'a> {
             Some(obstacle) => {
                 let refusal = self.refusal(rate, &obstacle);
                 let help = refusal.help().unwrap_or_default().to_owned();
-                let force =
-                    if matches!(obstacle, Obstacle::NoTime(_)) { format!("\n{FORCE_HELP}") } else { String::new() };
+                let force = match obstacle {
+                    Obstacle::NoTime(_) if self.is_drive => format!("\n{FORCE_DRIVE_HELP}"),
+                    Obstacle::NoTime(_) => format!("\n{FORCE_HELP}"),
+                    _ => String::new(),
+                };
                 Err(refusal.with_help(help + &force))
             }
         }
@@ -128,16 +138,18 @@ impl<'a> RateCheck<'a> {
                 100.0 * share
             ),
         };
-        let (joint, board, role) = (&self.joint.name, self.board.name(), role_name(self.role));
-        Failure::new(format!("{joint} cannot be stepped at {rate} Hz on {board} in the role `{role}`: {why}")).with_help(
-            match self.nearest_accepted(rate) {
-                Some(nearest) => format!(
-                    "the nearest rate that can be met is {nearest} Hz: `--rate {nearest}` (in a test file control_rate_Hz in \
-                     [known])"
-                ),
-                None => "no rate fits this board: use a faster board, or a joint with fewer planets or harmonics".to_owned(),
-            },
-        )
+        let role = if self.is_drive { DRIVE } else { role_name(self.role) };
+        let in_test_file = if self.is_drive { "" } else { " (in a test file control_rate_Hz in [known])" };
+        let (joint, board) = (&self.joint.name, self.board.name());
+        Failure::new(format!("{joint} cannot be stepped at {rate} Hz on {board} in the role `{role}`: {why}"))
+            .with_help(match self.nearest_accepted(rate) {
+                Some(nearest) => {
+                    format!("the nearest rate that can be met is {nearest} Hz: `--rate {nearest}`{in_test_file}")
+                }
+                None => {
+                    "no rate fits this board: use a faster board, or a joint with fewer planets or harmonics".to_owned()
+                }
+            })
     }
 
     /// Lowest rate at which a step is stable [Hz].
@@ -213,6 +225,17 @@ mod tests {
         assert!(usual <= nearest && nearest < 20_000, "{nearest}");
         assert!(failure.help().unwrap().contains(&format!("--rate {nearest}`")), "{failure}");
         assert!(on_board.check(nearest).is_ok());
+    }
+
+    /// The role `drive` is called by its name, and has neither test files nor an identity.
+    #[test]
+    fn drive_refusal_names_drive() {
+        let q1 = named::load(Path::new("q1")).unwrap().file.parameters;
+        let nucleo = Board::load("nucleo-g474re").unwrap();
+        let failure = RateCheck::drive(&q1, &nucleo).check_unless_forced(20_000, false).unwrap_err();
+        assert!(failure.message().contains("on nucleo-g474re in the role `drive`"), "{failure}");
+        let help = failure.help().unwrap();
+        assert!(help.contains("--force") && !help.contains("identity") && !help.contains("test file"), "{help}");
     }
 
     /// `--force` accepts a tick that is too long, but no unstable rate and no rate that does not divide the clock.

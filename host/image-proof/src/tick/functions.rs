@@ -10,9 +10,8 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionFlags};
 
 use super::thumb::{Instruction, decode};
 
-/// Start address of the vector table, and index of SysTick in it.
+/// Start address of the vector table.
 const VECTORS: u64 = 0x0800_0000;
-const SYSTICK: u64 = 15;
 
 /// Function of the image.
 #[derive(Debug, Clone)]
@@ -100,9 +99,9 @@ impl Functions {
         found
     }
 
-    /// Handler of the tick, from the vector table.
-    pub fn tick(&self) -> Option<&Function> {
-        let entry = VECTORS + 4 * SYSTICK;
+    /// Handler of an exception, from the vector table.
+    pub fn handler(&self, exception: u8) -> Option<&Function> {
+        let entry = VECTORS + 4 * u64::from(exception);
         self.at(u32::from(self.half(entry as u32 + 2)?) << 16 | u32::from(self.half(entry as u32)?))
     }
 

@@ -1,4 +1,4 @@
-//! Proves that the tick cannot panic and bounds its stack, from the linked image: all calls from the SysTick handler
+//! Proves that the tick cannot panic and bounds its stack, from the linked image: all calls from the tick's handler
 //! are followed, so that the result holds for any sources and compiler.
 //!
 //! `functions` disassembles the image, `thumb` decodes instructions, `frame` analyses one function, `walk` the call
@@ -22,14 +22,23 @@ pub const STACK_BOUND: u32 = 2048;
 /// Interrupt frame: 26 words with the floating-point registers, and one for alignment [byte].
 const INTERRUPT_FRAME: u32 = 27 * 4;
 
-/// Analyses the tick of a role's image.
-pub fn reach(elf: &Path) -> Outcome<Reach> {
+/// Exception whose handler a tick begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exception {
+    /// Role `drive`: the handler of SysTick requests the tick by PendSV.
+    PendSv = 14,
+    /// Other roles.
+    SysTick = 15,
+}
+
+/// Analyses the tick of a role's image from the handler of an exception on.
+pub fn reach(elf: &Path, exception: Exception) -> Outcome<Reach> {
     let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
     let functions = Functions::read(&bytes).map_err(failed)?;
-    let handler = functions.tick().ok_or_else(|| {
-        failed("its vector table names no function for SysTick".into())
-            .with_help("the image must bind the tick to SysTick and keep its symbols")
+    let handler = functions.handler(exception as u8).ok_or_else(|| {
+        failed(format!("its vector table names no function for {exception:?}"))
+            .with_help(format!("the image must bind the tick to {exception:?} and keep its symbols"))
     })?;
     Ok(walk::walk(&functions, handler))
 }
@@ -126,7 +135,7 @@ mod tests {
     /// The failure names the file that is no image.
     #[test]
     fn non_image_named() {
-        let failure = reach(Path::new("/proc/self/status")).unwrap_err();
+        let failure = reach(Path::new("/proc/self/status"), Exception::SysTick).unwrap_err();
         assert!(failure.message().contains("/proc/self/status"), "{failure}");
     }
 }

@@ -10,8 +10,8 @@ use report::failure::Outcome;
 use report::{command_line, output};
 
 use crate::{
-    board as board_files, budget, check, completions, flash, hil, identify, image, library, memory, merge, new, replay,
-    research, sim, sweep, tables, twin,
+    board as board_files, budget, check, completions, export, flash, hil, identify, image, library, memory, merge, new,
+    replay, research, sim, sweep, tables, twin,
 };
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
@@ -64,6 +64,8 @@ enum Command {
     Tables(tables::Arguments),
     /// Package the library for C and C++ in one archive: header, library, build files, costs, test program
     Library(library::Arguments),
+    /// Write a joint as a co-simulation unit (FMU) for other simulators: plant, or observer and compensation
+    Export(export::Arguments),
     /// Print a completion script for a shell: bash, zsh, fish and others
     Completions(completions::Arguments),
 }
@@ -100,6 +102,7 @@ fn run_subcommand(cli: &Cli) -> Outcome<()> {
         Some(Command::Flash(arguments)) => flash::run(arguments),
         Some(Command::Tables(arguments)) => tables::run(arguments),
         Some(Command::Library(arguments)) => library::run(arguments),
+        Some(Command::Export(arguments)) => export::run(arguments),
         Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
     }
 }

@@ -6,6 +6,7 @@ mod budget;
 mod check;
 mod cli;
 mod completions;
+mod export;
 mod flash;
 mod hil;
 mod identify;

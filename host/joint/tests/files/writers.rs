@@ -1,4 +1,4 @@
-//! Every command that writes files, as short as possible. Images are left out, since they need a compiler.
+//! Every command that writes files, as short as possible. Images and FMUs are left out, since they need a compiler.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

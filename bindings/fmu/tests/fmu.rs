@@ -1,0 +1,352 @@
+//! Units of a joint: structure of the archive, and their bits against the core's, by a master written in C.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::sync::LazyLock;
+
+use board::device::board::Board;
+use c_library::library::{self, Library, Target};
+use c_library::programs;
+use fmu::archive::{self, File};
+use fmu::export::contents;
+use fmu::model::{Content, Fmi, Model};
+use fmu::variables::{Kind, Role};
+use model_core::compensation::{Command as Demand, Compensation, ImpedancePoint, Motion, Position};
+use model_core::gears::Tables;
+use model_core::numbers::digest::{START, chain};
+use model_core::observer::{MAPPED, Observer};
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+use parameters::{ContactState, Mesh};
+use table_blob::{Blob, Gears};
+
+static LIBRARY: LazyLock<Library> =
+    LazyLock::new(|| library::build(Target::Host, "library", &|line| println!("{line}")).expect("a library"));
+
+const TURN: f64 = 6.283_185_307_179_586;
+
+fn joint(name: &str) -> joint_file::JointFile {
+    joint_file::named::load(Path::new(name)).expect("a joint").file
+}
+
+fn model(fmi: Fmi, content: Content, joint: &joint_file::JointFile) -> Model {
+    Model::new(fmi, content, joint, &Board::emulated()).expect("tables")
+}
+
+fn text<'f>(files: &'f [File], name: &str) -> &'f str {
+    let file = files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("no {name}"));
+    std::str::from_utf8(&file.bytes).expect("a text")
+}
+
+/// Attributes of all elements of a name, in a well-formed document.
+fn elements(xml: &str, name: &str) -> Vec<Vec<(String, String)>> {
+    let mut reader = quick_xml::Reader::from_str(xml);
+    let (mut found, mut depth) = (vec![], 0);
+    loop {
+        use quick_xml::events::Event;
+        let event = reader.read_event().expect("well-formed");
+        depth += match &event {
+            Event::Start(_) => 1,
+            Event::End(_) => -1,
+            _ => 0,
+        };
+        match event {
+            Event::Start(element) | Event::Empty(element) if element.name().as_ref() == name => {
+                let attribute = |one: quick_xml::events::attributes::Attribute<'_>| {
+                    (one.key.as_ref().to_owned(), one.value.clone().into_owned())
+                };
+                found.push(element.attributes().map(|one| attribute(one.expect("an attribute"))).collect());
+            }
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    assert_eq!(depth, 0, "every element is closed");
+    found
+}
+
+fn value<'a>(attributes: &'a [(String, String)], name: &str) -> &'a str {
+    attributes.iter().find(|(key, _)| key == name).map_or("", |(_, value)| value)
+}
+
+/// Description, binary and sources of both models and both versions belong together, and a second export gives equal bytes.
+#[test]
+fn archive_holds_what_its_description_names() {
+    let q1 = joint("q1");
+    for (fmi, version) in [(Fmi::Two, "2.0"), (Fmi::Three, "3.0")] {
+        for content in [Content::Plant, Content::Controller] {
+            let model = model(fmi, content, &q1);
+            let files = contents(&model, &LIBRARY).expect("an FMU");
+            assert_eq!(files, contents(&model, &LIBRARY).expect("an FMU"), "equal bytes");
+            let xml = text(&files, "modelDescription.xml");
+            let root = &elements(xml, "fmiModelDescription")[0];
+            assert_eq!(value(root, "fmiVersion"), version);
+            let token = value(root, if fmi == Fmi::Two { "guid" } else { "instantiationToken" });
+            assert!(text(&files, "sources/description.h").contains(token), "binary and description have one token");
+            let unit = &elements(xml, "CoSimulation")[0];
+            let name = format!("/{}.so", value(unit, "modelIdentifier"));
+            assert_eq!(
+                files.iter().filter(|file| file.name.starts_with("binaries/") && file.name.ends_with(&name)).count(),
+                1
+            );
+            let units: Vec<String> = elements(xml, "Unit").iter().map(|unit| value(unit, "name").to_owned()).collect();
+            let variables: Vec<_> = ["ScalarVariable", "Float64", "Int32", "Boolean"]
+                .iter()
+                .flat_map(|name| elements(xml, name))
+                .filter(|one| !value(one, "name").is_empty())
+                .collect();
+            assert_eq!(variables.len(), model.variables.len());
+            assert!(variables.iter().all(|one| !value(one, "description").is_empty()));
+            for real in ["Real", "Float64"].iter().flat_map(|name| elements(xml, name)) {
+                assert!(units.iter().any(|unit| unit == value(&real, "unit")), "{real:?}");
+            }
+            if fmi == Fmi::Three {
+                let build = text(&files, "sources/buildDescription.xml");
+                for source in elements(build, "SourceFile") {
+                    text(&files, &format!("sources/{}", value(&source, "name")));
+                }
+            }
+            for name in ["sources/rust/Cargo.toml", "sources/rust/bindings/c/src/lib.rs", "sources/CMakeLists.txt"] {
+                text(&files, name);
+            }
+            let archive = archive::pack(&files).expect("an archive");
+            assert!(archive.starts_with(b"PK\x03\x04") && archive.len() < 4_000_000, "{} B", archive.len());
+        }
+    }
+}
+
+/// Two joints, rates or parts never share a token.
+#[test]
+fn other_joint_gets_other_token() {
+    let [q1, mut other] = [joint("q1"), joint("q1")];
+    other.parameters.sun_planet.half_backlash[0] *= 1.5;
+    let tokens = [&q1, &other].map(|joint| {
+        let files = contents(&model(Fmi::Two, Content::Plant, joint), &LIBRARY).expect("an FMU");
+        value(&elements(text(&files, "modelDescription.xml"), "fmiModelDescription")[0], "guid").to_owned()
+    });
+    assert_ne!(tokens[0], tokens[1]);
+}
+
+/// References of the variables for the master, as a header.
+fn references(plant: &Model, controller: &Model) -> String {
+    let mut out = format!("#define RATE_HZ {:?}\nenum {{\n", f64::from(plant.rate));
+    for (prefix, model) in [("PLANT", plant), ("CONTROLLER", controller)] {
+        for (index, variable) in model.variables.iter().enumerate().filter(|(_, it)| !it.name.contains('[')) {
+            out += &format!("    {prefix}_{} = {index},\n", variable.name);
+        }
+    }
+    let outputs = || plant.variables.iter().enumerate().filter(|(_, it)| it.role == Role::Output);
+    let kind = |kind| match kind {
+        Kind::Real(_) => 'r',
+        Kind::Integer => 'i',
+        Kind::Boolean => 'b',
+    };
+    out += "};\nstatic const unsigned plant_outputs[] = {";
+    out += &outputs().map(|(index, _)| format!("{index}, ")).collect::<String>();
+    out += "};\nstatic const char plant_kinds[] = {";
+    out += &outputs().map(|(_, it)| format!("'{}', ", kind(it.kind))).collect::<String>();
+    out + "};\n"
+}
+
+fn side(contact: ContactState) -> f64 {
+    match contact {
+        ContactState::Separated => 0.0,
+        ContactState::DriveSide => 1.0,
+        ContactState::BackSide => -1.0,
+    }
+}
+
+/// Outputs of the plant in the order of its variables, in f64 from the core's f32.
+fn outputs<const N: usize>(joint: &VirtualJoint<'_, f32, N>, ratio: f64, meshes: [&Mesh; 2]) -> Vec<f64> {
+    let (motion, acting, samples) = (joint.outputs(), joint.acting(), joint.samples());
+    let output = samples.output.expect("a reading");
+    let carrier = (f64::from(motion.carrier_turns) + f64::from(motion.carrier_fraction) / 4_294_967_296.0) * TURN;
+    let mut all = vec![
+        ratio * carrier + f64::from(motion.motor_offset),
+        carrier + f64::from(motion.link_offset),
+        motion.carrier_speed.into(),
+        motion.gap.into(),
+        motion.wind_up.into(),
+        acting.air_gap.into(),
+        acting.drive.into(),
+        acting.load.into(),
+        samples.motor.counts.into(),
+        samples.time.wrapping_sub(samples.motor.time).into(),
+        1.0,
+        output.counts.into(),
+        samples.time.wrapping_sub(output.time).into(),
+    ];
+    for (kind, mesh) in meshes.into_iter().enumerate() {
+        all.extend(motion.deflections[kind].iter().zip(&mesh.half_backlash).map(|(deflection, half)| {
+            let deflection = f64::from(*deflection);
+            mesh.mean_stiffness * (deflection - deflection.clamp(-half, *half))
+        }));
+        all.extend(motion.contacts[kind].iter().map(|contact| side(*contact)));
+    }
+    all
+}
+
+fn add(digest: u64, values: &[f64]) -> u64 {
+    values.iter().fold(digest, |digest, value| chain(digest, value.to_bits()))
+}
+
+/// Torque of the master in a period [N m].
+fn torque(period: i32) -> f64 {
+    f64::from(period * 37 % 101 - 50) * 0.02
+}
+
+/// Digest of the plant alone, with outputs every `many` periods.
+fn plant_digest<const N: usize>(
+    gears: &Tables<f32, N>,
+    around: &SurroundingsTable<f32>,
+    file: &joint_file::JointFile,
+    ratio: f64,
+    many: i32,
+) -> u64 {
+    let mut joint = VirtualJoint::new(gears, around);
+    let meshes = [&file.parameters.sun_planet, &file.parameters.ring_planet];
+    (0..2000).step_by(many as usize).fold(START, |digest, period| {
+        (0..many).for_each(|_| joint.advance(torque(period) as f32, torque(period / 7) as f32));
+        add(digest, &outputs(&joint, ratio, meshes))
+    })
+}
+
+/// Digest of the closed loop: torque, estimated gap, angle of the link.
+fn loop_digest<const N: usize>(gears: &Tables<f32, N>, around: &SurroundingsTable<f32>, blob: &Blob<'_>) -> u64 {
+    let mut joint = VirtualJoint::new(gears, around);
+    let mut observer = Observer::<f32, MAPPED>::new(blob.observer().expect("a table"));
+    let mut compensation = Compensation::new(blob.compensation().expect("a table"));
+    (0..6000_i32).fold(START, |digest, period| {
+        let place = period % 1000;
+        let angle = 0.3 * f64::from(if place < 500 { place } else { 1000 - place }) / 500.0;
+        let turns = angle / TURN;
+        let position = Position { turns: turns as i32, fraction: (turns - f64::from(turns as i32)) as f32 };
+        let demand = if period / 2000 % 2 == 0 {
+            Demand::Position { now: Motion { position, speed: 0.0, acceleration: 0.0 }, ahead: None }
+        } else {
+            Demand::Impedance(ImpedancePoint { position, speed: 0.0, torque: 0.0, stiffness: 100.0, damping: 3.0 })
+        };
+        let mut samples = joint.samples();
+        if place >= 900 {
+            samples.output = None;
+        }
+        let estimates = *observer.step(&samples);
+        let shaped = compensation.step(&estimates, &demand);
+        joint.advance(shaped.torque, 0.0);
+        let motion = joint.outputs();
+        let carrier = (f64::from(motion.carrier_turns) + f64::from(motion.carrier_fraction) / 4_294_967_296.0) * TURN;
+        let link = carrier + f64::from(motion.link_offset);
+        add(digest, &[shaped.torque.into(), estimates.gap.value.into(), link])
+    })
+}
+
+/// The master's output for a joint: digests of the units.
+fn master(fmi: Fmi, joint: &joint_file::JointFile) -> (Vec<String>, Model) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [plant, controller] = [Content::Plant, Content::Controller].map(|content| model(fmi, content, joint));
+    let path = |name: &str| folder.path().join(name);
+    let mut arguments = vec![];
+    for model in [&plant, &controller] {
+        let files = contents(model, &LIBRARY).expect("an FMU");
+        let binary = files.iter().find(|file| file.name.starts_with("binaries/")).expect("a binary");
+        let place = path(&model.identifier);
+        fs::write(&place, &binary.bytes).expect("room");
+        let root = elements(text(&files, "modelDescription.xml"), "fmiModelDescription");
+        let token = value(&root[0], if fmi == Fmi::Two { "guid" } else { "instantiationToken" });
+        arguments.extend([place.to_str().expect("a text").to_owned(), token.to_owned()]);
+    }
+    fs::write(path("references.h"), references(&plant, &controller)).expect("room");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut compiler = Command::new("gcc");
+    compiler.args(programs::WARNINGS).args(["-std=c11", "-O1", "-Wno-pedantic", "-Wno-unused-function"]);
+    compiler.arg(if fmi == Fmi::Two { "-DFMI=2" } else { "-DFMI=3" }).arg("-I").arg(folder.path());
+    compiler.arg("-I").arg(own.join("c")).arg(own.join("tests/master.c")).args(["-ldl", "-o"]).arg(path("master"));
+    let compiled = compiler.output().expect("gcc");
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let lines = programs::run(&path("master"), &arguments).expect("no call is answered wrongly");
+    (lines, plant)
+}
+
+/// Wrong calls are refused with their reason, a saved state is repeated, a thousand instances do not disturb one another, and
+/// plant and closed loop have the core's bits, for each kind of gear.
+#[test]
+fn units_match_core_bitwise() {
+    for (name, fmi) in [("q1", Fmi::Two), ("q1", Fmi::Three), ("s1", Fmi::Two), ("d2", Fmi::Three)] {
+        let file = joint(name);
+        let (lines, plant) = master(fmi, &file);
+        let blob = Blob::open(&plant.tables.words).expect("tables");
+        let (gears, around) = blob.plant().expect("a plant");
+        let digests = match gears {
+            Gears::One(gears) => all_digests(gears, around, &file, &plant, &blob),
+            Gears::Three(gears) => all_digests(gears, around, &file, &plant, &blob),
+            Gears::Four(gears) => all_digests(gears, around, &file, &plant, &blob),
+            Gears::Five(gears) => all_digests(gears, around, &file, &plant, &blob),
+        };
+        let found: Vec<_> = ["single ", "tens ", "loop "].map(|word| programs::value_after(&lines, word)).into();
+        assert_eq!(found, digests.map(|digest| Some(format!("{digest:016x}"))), "{name}: {lines:?}");
+    }
+}
+
+fn all_digests<const N: usize>(
+    gears: &Tables<f32, N>,
+    around: &SurroundingsTable<f32>,
+    file: &joint_file::JointFile,
+    plant: &Model,
+    blob: &Blob<'_>,
+) -> [u64; 3] {
+    [
+        plant_digest(gears, around, file, plant.ratio, 1),
+        plant_digest(gears, around, file, plant.ratio, 10),
+        loop_digest(gears, around, blob),
+    ]
+}
+
+/// Python with the packages of `fmpy.txt`, below the build directory.
+fn python() -> std::path::PathBuf {
+    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmpy");
+    let python = place.join("bin/python");
+    let pinned = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmpy.txt");
+    let installed = place.join("installed.txt");
+    if fs::read(&installed).ok() != fs::read(&pinned).ok() {
+        succeeded(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&place));
+        let mut install = Command::new(&python);
+        install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--requirement"]).arg(&pinned);
+        succeeded(&mut install);
+        fs::copy(&pinned, &installed).expect("room");
+    }
+    python
+}
+
+/// Output of a process that must succeed.
+fn succeeded(command: &mut Command) -> String {
+    let ended = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let [out, said] = [&ended.stdout, &ended.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    assert!(ended.status.success(), "{command:?}:\n{out}{said}");
+    out
+}
+
+/// FMPy finds no problem, simulates, repeats a saved state, holds 1,000 instances, and reads the core's bits.
+#[test]
+#[ignore = "installs 90 MB: cargo test -p fmu -- --ignored"]
+fn fmpy_reads_the_core_bits() {
+    let q1 = joint("q1");
+    let folder = tempfile::tempdir().expect("a folder");
+    for (fmi, version) in [(Fmi::Two, "2"), (Fmi::Three, "3")] {
+        let models = [Content::Plant, Content::Controller].map(|content| model(fmi, content, &q1));
+        let paths = models.each_ref().map(|model| {
+            let path = folder.path().join(format!("{}_{version}.fmu", model.identifier));
+            let archive = archive::pack(&contents(model, &LIBRARY).expect("an FMU")).expect("an archive");
+            fs::write(&path, archive).expect("room");
+            path
+        });
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmpy_importer.py");
+        let said = succeeded(Command::new(python()).arg(script).arg(version).args(&paths));
+        println!("{said}");
+        let blob = Blob::open(&models[0].tables.words).expect("tables");
+        let (Gears::Three(gears), around) = blob.plant().expect("a plant") else { panic!("Q1 has three planets") };
+        let expected = plant_digest(gears, around, &q1, models[0].ratio, 1);
+        assert!(said.contains(&format!("single {expected:016x}\n")), "{said}");
+        assert!(said.contains("1000 instances"), "{said}");
+    }
+}

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 /// Joints of one block, which one core steps. Small enough for four cores to share a few dozen joints, large enough for
 /// the rows of neighbouring blocks to share few cache lines.
 pub const BLOCK: usize = 16;
-/// Joint-periods between two looks at Python's signals: about 50 ms of plants on one core, whose period takes half a
-/// microsecond.
+/// Joint-periods between two looks at Python's signals: 26 ms of plants on one core. A period of Q1 takes 0.26 us of
+/// processor time, measured on an x86-64 server.
 pub const PERIODS_PER_CHECK: usize = 100_000;
 
 /// Value of a column.

@@ -35,7 +35,15 @@ pub fn build(model: &Model, sources: &[File], library: &Library) -> Outcome<Vec<
     fs::write(folder.path().join("liblostmotion.a"), &library.archive).map_err(failure)?;
     let mut command = Command::new(library.target.tool("gcc"));
     command.current_dir(folder.path()).args(WARNINGS).args(FLAGS);
-    command.args(["-shared", "-s", "-Wl,--exclude-libs,ALL", "-Wl,--build-id=none", "-I.", "-Iinclude"]);
+    command.args([
+        "-shared",
+        "-s",
+        "-Wl,--gc-sections",
+        "-Wl,--exclude-libs,ALL",
+        "-Wl,--build-id=none",
+        "-I.",
+        "-Iinclude",
+    ]);
     command.args(c_files(model)).args(["liblostmotion.a", "-o", "model.so"]);
     tool::capture_output(&mut command)?;
     fs::read(folder.path().join("model.so")).map_err(|error| Failure::new(format!("the FMU's binary: {error}")))

@@ -144,7 +144,7 @@ if(NOT CARGO)
 endif()
 set(library \"${CMAKE_CURRENT_BINARY_DIR}/rust/firmware/${CMAKE_STATIC_LIBRARY_PREFIX}c_bindings${CMAKE_STATIC_LIBRARY_SUFFIX}\")
 add_custom_command(OUTPUT \"${library}\"
-  COMMAND \"${CARGO}\" rustc --manifest-path \"${CMAKE_CURRENT_SOURCE_DIR}/rust/Cargo.toml\" --target-dir \"${CMAKE_CURRENT_BINARY_DIR}/rust\"
+  COMMAND \"${CMAKE_COMMAND}\" -E env CARGO_PROFILE_FIRMWARE_DEBUG=0 \"${CARGO}\" rustc --manifest-path \"${CMAKE_CURRENT_SOURCE_DIR}/rust/Cargo.toml\" --target-dir \"${CMAKE_CURRENT_BINARY_DIR}/rust\"
           --package c-bindings --lib --profile firmware --crate-type staticlib --features library)
 add_custom_target(lostmotion DEPENDS \"${library}\")
 add_library(@MODEL@ SHARED @SOURCES@)

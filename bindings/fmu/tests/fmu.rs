@@ -23,7 +23,7 @@ use table_blob::{Blob, Gears};
 static LIBRARY: LazyLock<Library> =
     LazyLock::new(|| library::build(Target::Host, "library", &|line| println!("{line}")).expect("a library"));
 
-const TURN: f64 = 6.283_185_307_179_586;
+const TURN: f64 = std::f64::consts::TAU;
 
 fn joint(name: &str) -> joint_file::JointFile {
     joint_file::named::load(Path::new(name)).expect("a joint").file

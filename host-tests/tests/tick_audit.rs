@@ -4,7 +4,7 @@ use board::device::board::Board;
 use board::device::image::{build_image, preset_file};
 use board::device::measuring::build_measuring;
 use board::device::toolchain::Toolchain;
-use image_proof::tick;
+use image_proof::tick::{self, Exception};
 use link::messages::Role;
 
 /// No path of the tick ends in a panic, and its stack has a bound.
@@ -15,7 +15,7 @@ fn tick_cannot_panic_and_bounds_its_stack() {
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     for (role, rate) in [(Role::Plant, 20_000), (Role::Observer, 10_000), (Role::Loop, 10_000)] {
         let image = build_image(&toolchain, &preset_file("q1"), &Board::emulated(), role, rate, false, &say);
-        let reach = tick::reach(&image.expect("an image").elf).expect("an image that can be read");
+        let reach = tick::reach(&image.expect("an image").elf, Exception::SysTick).expect("an image that can be read");
         println!("{role:?}: {} B of stack: {:?}", tick::stack(&reach), reach.deepest);
         tick::check(&reach).unwrap_or_else(|failure| panic!("{failure}"));
     }
@@ -28,7 +28,8 @@ fn planted_faults_are_found_and_named() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     let elf = build_measuring(&toolchain, "planted_faults", &[], 20_000, &say).expect("an image");
-    let failure = tick::check(&tick::reach(&elf).expect("an image that can be read")).expect_err("faults");
+    let failure =
+        tick::check(&tick::reach(&elf, Exception::SysTick).expect("an image that can be read")).expect_err("faults");
     println!("{failure}");
     for fault in [
         "may_panic -> core::panicking::panic_bounds_check",

@@ -24,9 +24,10 @@ pub fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> 
     let quiet_work = move || {
         let _running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
         interruption::leave_to_host();
+        // A request may have come after the end of the work before.
+        interruption::request(false);
         output::silence();
         let outcome = work();
-        interruption::request(false);
         let _ = sender.send(outcome);
     };
     thread::Builder::new()

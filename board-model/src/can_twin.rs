@@ -7,7 +7,7 @@ use model_core::gears::design::Processor;
 use virtual_drive::maker::{self, Maker};
 use virtual_drive::{DriveDesign, VirtualDrive, joint_tables};
 
-use crate::can_bus::{CanBus, Logged};
+use crate::can_bus::CanBus;
 
 /// Drive of an image.
 #[derive(Debug, Clone, Copy)]

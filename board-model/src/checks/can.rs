@@ -7,8 +7,8 @@ use drives::Frame;
 use drives::frame::standard;
 
 use super::can_client::{Client, Mode, Order};
-use super::clean;
-use crate::boards::Subject;
+use super::{clean, load};
+use crate::boards::{Subject, USUAL_COST, usual_surroundings};
 use crate::can_bus::CanBus;
 use crate::can_twin::DriveOf;
 use crate::cpu::Board;
@@ -30,8 +30,14 @@ struct Session<'a> {
 
 impl Session<'_> {
     fn start(subject: &Subject) -> Result<Self, String> {
+        Self::start_at(subject, USUAL_COST)
+    }
+
+    /// Starts a board with another cost of an instruction [thousandths of a cycle].
+    fn start_at(subject: &Subject, cost: u64) -> Result<Self, String> {
         let client = Client::of(drive_of(&subject.board).ok_or("the board is no drive")?.maker);
-        let mut session = Self { board: subject.start()?, client, read: 0 };
+        let board = subject.start_at(usual_surroundings(&subject.board), cost)?;
+        let mut session = Self { board, client, read: 0 };
         session.run(20 * MILLISECOND)?;
         Ok(session)
     }
@@ -144,9 +150,10 @@ pub fn equals_twin(subject: &Subject) -> Result<String, String> {
     Ok(format!("{count} frames in {ticks} ticks, each the twin's"))
 }
 
-/// A bus that is full of foreign frames: nothing is lost, and a stop is heard.
+/// A bus that is full of foreign frames, beside ticks as long as counted, which fill the FIFO: nothing is lost, and a
+/// stop is heard.
 pub fn hears_in_a_flood(subject: &Subject) -> Result<String, String> {
-    let mut session = Session::start(subject)?;
+    let mut session = Session::start_at(subject, load::cost(subject.board.chip()))?;
     session.order(Order::Enable);
     session.travel(60)?;
     if session.asked_mode("before the flood")? != Mode::On {

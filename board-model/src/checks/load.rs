@@ -17,7 +17,7 @@ const PAUSE: Time = 20_000 * MICROSECOND;
 const TIMEOUT: u32 = 1_000_000;
 
 /// Cost of an instruction as estimated on the project's page about its budget [thousandths of a cycle].
-fn cost(chip: Chip) -> u64 {
+pub fn cost(chip: Chip) -> u64 {
     match chip {
         Chip::Stm32f405 => 1400,
         Chip::Stm32g474 | Chip::Stm32g431 => 1900,

@@ -60,8 +60,7 @@ impl Server {
             ["conf", "write", ..] | ["tel", "stop", ..] => answer.push_str("OK\r\n"),
             _ => answer.push_str("ERR unknown command\r\n"),
         };
-        // Answers that nobody fetches are lost.
-        let _ = self.channel.answers.extend_from_slice(answer.as_bytes());
+        self.channel.answer(answer.as_bytes());
     }
 
     /// Value of a configuration by its name, after it was set to `new`; `None` for an unknown name or a wrong value.

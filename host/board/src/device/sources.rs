@@ -13,12 +13,13 @@ use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
 /// Folders and files of the workspace that the firmware is built from.
-const SOURCES: [&str; 14] = [
+const SOURCES: [&str; 16] = [
     "Cargo.lock",
     "Cargo.toml",
     "memory.x",
     ".cargo",
     "boards",
+    "drives",
     "firmware/Cargo.toml",
     "firmware/build.rs",
     "firmware/src",
@@ -28,6 +29,7 @@ const SOURCES: [&str; 14] = [
     "link",
     "model-core",
     "parameters",
+    "virtual-drive",
 ];
 
 /// Returns the image at `place`, built if it is missing or its digest differs from the one noted beside it.

@@ -139,7 +139,9 @@ pub fn log_columns<'py>(
         let log = LogFile::open(&path)?;
         let columns = match &topic {
             Some(topic) => log.topic(topic)?,
-            None => log.columns(None, &ColumnMap::new(map.as_deref(), map_joint.as_deref(), &[], &[])?, ratio, |_| true)?,
+            None => {
+                log.columns(None, &ColumnMap::new(map.as_deref(), map_joint.as_deref(), &[], &[])?, ratio, |_| true)?
+            }
         };
         let names: Vec<String> = columns.names().map(str::to_owned).collect();
         let values = |name: String| columns.column(&name).map(|values| (name.clone(), values.to_vec()));

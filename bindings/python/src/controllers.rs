@@ -199,7 +199,10 @@ impl SetPoints<'_> {
                     let at = [row, joint];
                     Motion { position: position(angle[at]), speed: speed[at], acceleration: acceleration[at] }
                 };
-                Command::Position { now: motion(row), ahead: lead.map(|lead| row + lead).filter(|row| *row < rows).map(motion) }
+                Command::Position {
+                    now: motion(row),
+                    ahead: lead.map(|lead| row + lead).filter(|row| *row < rows).map(motion),
+                }
             }
             Self::Impedance(angle, [speed, torque, stiffness, damping]) => {
                 let at = [row, joint];

@@ -101,12 +101,13 @@ pub fn complete(arguments: &Arguments, may_ask: bool) -> Outcome<DataSheet> {
     let missing: Vec<&str> =
         needed.iter().zip(given).filter(|(_, value)| value.is_none()).map(|(figure, _)| figure.option).collect();
     if !missing.is_empty() && !asks {
-        return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
-            .with_help(if may_ask {
+        return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", "))).with_help(
+            if may_ask {
                 "give each with its figure; a terminal session asks for them"
             } else {
                 "give each with its figure"
-            }));
+            },
+        ));
     }
     let mut figures = [0.0; REQUIRED_FIGURES.len()];
     for ((figure, value), place) in needed.iter().zip(given).zip(&mut figures) {

@@ -1,12 +1,12 @@
 //! Commands of `joint`: the whole command line, and single commands as functions, whose results lie in a folder.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use board::device::board::Board;
 use clap::Parser;
 use joint_file::named;
-use log_reader::column_map::ColumnMap;
+use log_reader::column_map::{self, ColumnMap};
 use log_reader::log_file::LogFile;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -53,6 +53,7 @@ pub fn run_command(py: Python<'_>, arguments: Vec<OsString>, data: PathBuf) -> u
 pub fn identify(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<()> {
     work::run(py, move || {
         let arguments: ::identify::Arguments = parse(arguments)?;
+        choose_joint(arguments.map.as_deref(), arguments.map_joint.as_deref())?;
         let progress = Progress::new();
         let outcome = ::identify::run(&arguments, &progress);
         progress.clear();
@@ -60,16 +61,27 @@ pub fn identify(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<()> {
     })
 }
 
-/// `joint new`: writes a joint file from the figures of a data sheet.
+/// Refuses a column map of several joints without the name of one of them.
+fn choose_joint(map: Option<&Path>, chosen: Option<&str>) -> Outcome<()> {
+    let names: Vec<String> = column_map::joints(map)?.into_iter().map(|it| it.name).collect();
+    match chosen {
+        None if !names.is_empty() => Err(Failure::new(format!("the map has several joints: {}", names.join(", ")))
+            .with_help(format!("choose one of them with map_joint=\"{}\"", names[0]))),
+        _ => Ok(()),
+    }
+}
+
+/// `joint new`: writes a joint file from the figures of a data sheet, and never asks on the terminal. Returns the printed
+/// text.
 #[pyfunction]
-pub fn joint_from_data_sheet(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<()> {
-    work::run(py, move || data_sheet::run(&parse(arguments)?).map(|_| ()))
+pub fn joint_from_data_sheet(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<String> {
+    work::run(py, move || data_sheet::run(&parse(arguments)?, false))
 }
 
 /// `joint check`: figures of a joint as JSON.
 #[pyfunction]
 pub fn check(py: Python<'_>, name: String, text: String) -> PyResult<String> {
-    work::run(py, move || {
+    work::short(py, || {
         let loaded = named::read_changed(name, text, &[])?;
         output::json("figures", &summary(&loaded, &Board::emulated(), CHECK_RATE, None)?)
     })
@@ -119,13 +131,17 @@ pub fn log_columns<'py>(
     path: PathBuf,
     topic: Option<String>,
     map: Option<PathBuf>,
+    map_joint: Option<String>,
     ratio: f64,
 ) -> PyResult<Vec<(String, Bound<'py, PyArray1<f64>>)>> {
     let columns = work::run(py, move || {
+        choose_joint(map.as_deref(), map_joint.as_deref())?;
         let log = LogFile::open(&path)?;
         let columns = match &topic {
             Some(topic) => log.topic(topic)?,
-            None => log.columns(None, &ColumnMap::new(map.as_deref(), None, &[], &[])?, ratio, |_| true)?,
+            None => {
+                log.columns(None, &ColumnMap::new(map.as_deref(), map_joint.as_deref(), &[], &[])?, ratio, |_| true)?
+            }
         };
         let names: Vec<String> = columns.names().map(str::to_owned).collect();
         let values = |name: String| columns.column(&name).map(|values| (name.clone(), values.to_vec()));

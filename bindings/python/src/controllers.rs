@@ -188,18 +188,21 @@ impl SetPoints<'_> {
         }
     }
 
-    /// Command of a joint in a row; the motion after `lead` rows is known if `lead` is given, and ends with the last row.
+    /// Command of a joint in a row. The motion `lead` rows later is known up to the last row of the array.
     #[inline]
     pub fn command(&self, row: usize, joint: usize, lead: Option<usize>) -> Command<f32> {
         match self {
             Self::Hold => Command::HOLD,
             Self::Position(angle, [speed, acceleration]) => {
-                let last = angle.len_of(Axis(0)) - 1;
+                let rows = angle.len_of(Axis(0));
                 let motion = |row: usize| {
-                    let at = [row.min(last), joint];
+                    let at = [row, joint];
                     Motion { position: position(angle[at]), speed: speed[at], acceleration: acceleration[at] }
                 };
-                Command::Position { now: motion(row), ahead: lead.map(|lead| motion(row + lead)) }
+                Command::Position {
+                    now: motion(row),
+                    ahead: lead.map(|lead| row + lead).filter(|row| *row < rows).map(motion),
+                }
             }
             Self::Impedance(angle, [speed, torque, stiffness, damping]) => {
                 let at = [row, joint];
@@ -255,15 +258,25 @@ impl ControllerOfJoint {
         })?;
         let blob = Blob::open(unit.borrow_owner())?;
         let header = blob.header();
-        let lead = (blob.compensation()?.crossing.lead * header.control_rate as f32) as usize;
+        let lead = (blob.compensation()?.crossing.lead * header.control_rate as f32).round() as usize;
         Ok(Self { ticks: header.clock_rate / header.control_rate, time: 0, lead, unit })
     }
 
-    /// One control period.
+    /// One control period. The samples are those of the present time of the controller's clock, which goes on with each
+    /// period whatever clock the source of the samples has.
     #[inline]
     pub fn step(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Output {
+        let time = self.time;
+        let reading = |counts| Reading { counts, time };
+        let samples = Samples {
+            time,
+            motor: reading(samples.motor.counts),
+            output: samples.output.map(|output| reading(output.counts)),
+            torque: samples.torque,
+        };
+        self.time = time.wrapping_add(self.ticks);
         self.unit.with_dependent_mut(|_, unit| {
-            let estimates = *unit.observer.step(samples);
+            let estimates = *unit.observer.step(&samples);
             let control = unit.compensation.as_mut().map(|it| it.step(&estimates, command)).unwrap_or_default();
             Output { estimates, control }
         })
@@ -278,7 +291,7 @@ impl Output {
 }
 
 /// Observers or controllers of `n` joints.
-#[pyclass(module = "lostmotion", subclass)]
+#[pyclass(module = "lostmotion._native", subclass)]
 pub struct Controllers {
     /// Controllers in their order.
     pub controllers: Vec<ControllerOfJoint>,
@@ -299,8 +312,9 @@ impl Controllers {
     }
 }
 
-/// Recorded samples of a block: counts of motor and output, torque.
-type RecordedSamples<'a> = (ArrayView2<'a, u32>, Option<ArrayView2<'a, u32>>, ArrayView2<'a, f32>);
+/// Recorded samples of a block: counts of the motor, counts of the output and true where they are missing, torque.
+type RecordedSamples<'a> =
+    (ArrayView2<'a, u32>, Option<ArrayView2<'a, u32>>, Option<ArrayView2<'a, bool>>, ArrayView2<'a, f32>);
 
 #[pymethods]
 impl Controllers {
@@ -334,10 +348,10 @@ impl Controllers {
         self.rate
     }
 
-    /// Time by which the compensation wants to know a motion ahead [s].
+    /// Time by which the compensation of each joint wants to know a motion ahead [s].
     #[getter]
-    fn lead(&self) -> f64 {
-        self.controllers.first().map_or(0.0, |it| it.lead as f64 / f64::from(self.rate))
+    fn leads(&self) -> Vec<f64> {
+        self.controllers.iter().map(|it| it.lead as f64 / f64::from(self.rate)).collect()
     }
 
     /// Returns every controller to its designed state; estimated parameters are lost.
@@ -361,12 +375,13 @@ impl Controllers {
     /// Steps over recorded samples with a row per period and a column per joint; each `every`-th period fills a row of
     /// the arrays in `record`.
     #[allow(clippy::too_many_arguments, reason = "arrays of one call from the Python half, which names them")]
-    #[pyo3(signature = (motor_counts, output_counts, torque, position, set_points, preview, every, record))]
+    #[pyo3(signature = (motor_counts, output_counts, missing, torque, position, set_points, preview, every, record))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         motor_counts: PyReadonlyArray2<'py, u32>,
         output_counts: Option<PyReadonlyArray2<'py, u32>>,
+        missing: Option<PyReadonlyArray2<'py, bool>>,
         torque: PyReadonlyArray2<'py, f32>,
         position: Option<PyReadonlyArray2<'py, f64>>,
         set_points: Vec<PyReadonlyArray2<'py, f32>>,
@@ -379,10 +394,12 @@ impl Controllers {
         check_shape("torque", torque.shape(), shape)?;
         check_shape("motor_counts", motor_counts.shape(), shape)?;
         output_counts.iter().try_for_each(|it| check_shape("output_counts", it.shape(), shape))?;
+        missing.iter().try_for_each(|it| check_shape("missing", it.shape(), shape))?;
         let set_points = BorrowedSetPoints::new(position, set_points, shape)?;
         let set_points = set_points.views();
         let (motor, torque) = (motor_counts.as_array(), torque.as_array());
         let output = output_counts.as_ref().map(|it| it.as_array());
+        let missing = missing.as_ref().map(|it| it.as_array());
         let mut columns = Column::of(QUANTITIES, record, [shape[0] / every, count])?;
         let mut recorders = columns::by_block(&mut columns, count.div_ceil(BLOCK));
         let band = (PERIODS_PER_CHECK / count.max(1)).max(1);
@@ -394,7 +411,8 @@ impl Controllers {
                 blocks.for_each(|(block, (controllers, recorders))| {
                     let joints = controllers.len();
                     let output = output.as_ref().map(|it| block_of(it, block, joints));
-                    let samples = (block_of(&motor, block, joints), output, block_of(&torque, block, joints));
+                    let missing = missing.as_ref().map(|it| block_of(it, block, joints));
+                    let samples = (block_of(&motor, block, joints), output, missing, block_of(&torque, block, joints));
                     let set_points = set_points.block(block, controllers.len());
                     step_block(controllers, &samples, &set_points, preview, [begin, end, every], recorders);
                 });
@@ -408,7 +426,7 @@ impl Controllers {
 /// Steps the controllers of a block, one after the other.
 fn step_block(
     controllers: &mut [ControllerOfJoint],
-    (motor, output, torque): &RecordedSamples<'_>,
+    (motor, output, missing, torque): &RecordedSamples<'_>,
     set_points: &SetPoints<'_>,
     preview: bool,
     [begin, end, every]: [usize; 3],
@@ -417,15 +435,13 @@ fn step_block(
     for (joint, controller) in controllers.iter_mut().enumerate() {
         let lead = preview.then_some(controller.lead);
         for row in begin..end {
-            let (at, time) = ([row, joint], controller.time);
-            let samples = Samples {
-                time,
-                motor: Reading { counts: motor[at], time },
-                output: output.as_ref().map(|counts| Reading { counts: counts[at], time }),
-                torque: torque[at],
-            };
+            let at = [row, joint];
+            let is_missing = missing.as_ref().is_some_and(|missing| missing[at]);
+            // The controller stamps the time.
+            let reading = |counts| Reading { counts, time: 0 };
+            let output = output.as_ref().filter(|_| !is_missing).map(|counts| reading(counts[at]));
+            let samples = Samples { time: 0, motor: reading(motor[at]), output, torque: torque[at] };
             let done = controller.step(&samples, &set_points.command(row, joint, lead));
-            controller.time = time.wrapping_add(controller.ticks);
             if (row + 1).is_multiple_of(every) {
                 recorders.iter_mut().for_each(|recorder| recorder.write(row / every, joint, &done));
             }

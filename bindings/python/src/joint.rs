@@ -11,7 +11,7 @@ use crate::failure::result;
 use crate::work;
 
 /// Joint of a joint file.
-#[pyclass(frozen, module = "lostmotion", subclass)]
+#[pyclass(frozen, module = "lostmotion._native", subclass)]
 pub struct Joint(pub Loaded);
 
 /// Refusal of a key.
@@ -19,9 +19,19 @@ fn refused(refused: joint_file::Refused) -> Failure {
     Failure::new(refused.message).with_help(refused.help)
 }
 
-/// Reads a text under a name.
-pub fn read(name: String, text: String, changes: &[String]) -> Outcome<Joint> {
-    named::read_changed(name, text, changes).map(Joint)
+/// Remark behind a changed value in the text of a joint.
+const REMARK: &str = "set in Python";
+
+/// Reads a text under a name with values changed, each as "key=value".
+fn read(name: String, mut text: String, changes: &[String]) -> Outcome<Joint> {
+    for change in changes {
+        let (key, value) = change.split_once('=').unwrap_or((change, ""));
+        text = joint_file::change_with_remark(&text, key, value, REMARK)
+            .map_err(|refused| Failure::new(format!("{change}: {}", refused.message)).with_help(refused.help))?;
+    }
+    let changed: String = changes.iter().map(|change| format!(" with {change}")).collect();
+    let loaded = named::read_changed(format!("{name}{changed}"), text, &[])?;
+    Ok(Joint(Loaded { name, ..loaded }))
 }
 
 #[pymethods]
@@ -29,13 +39,13 @@ impl Joint {
     /// Reads a path or a preset with values changed, each as "key=value".
     #[staticmethod]
     fn load(py: Python<'_>, file: PathBuf, changes: Vec<String>) -> PyResult<Self> {
-        work::run(py, move || named::load_with(&file, &changes).map(Self))
+        work::short(py, || named::text(&file).and_then(|(name, text)| read(name, text, &changes)))
     }
 
     /// Reads the text of a joint file.
     #[staticmethod]
     fn parse(py: Python<'_>, name: String, text: String, changes: Vec<String>) -> PyResult<Self> {
-        result(py, read(name, text, &changes))
+        work::short(py, || read(name, text, &changes))
     }
 
     /// Path, or name of the preset.

@@ -109,7 +109,7 @@ impl PlantOfJoint {
 }
 
 /// Plants of `n` joints.
-#[pyclass(module = "lostmotion", subclass)]
+#[pyclass(module = "lostmotion._native", subclass)]
 pub struct Plants {
     /// Plants in their order.
     pub plants: Vec<PlantOfJoint>,

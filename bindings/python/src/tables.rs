@@ -58,11 +58,18 @@ pub fn design(py: Python<'_>, joints: &[PyRef<'_, Joint>], n: usize, request: Re
     Ok((0..n).map(|index| designed[places[index % places.len()]].clone()).collect())
 }
 
+/// Remedies for tables that cannot be designed; those of `joint tables` are options of the command line.
+const HELP_OF_PLANT: &str = "`Joint.figures()` has the limits that follow from the file; pass another `rate=`";
+const HELP_OF_CONTROLLER: &str =
+    "`Joint.figures()` has the limits that follow from the file; pass another `rate=` or `bandwidth=`";
+
 fn tables_of(loaded: &joint_file::named::Loaded, request: Request) -> Outcome<Tables> {
     let mut joint = loaded.file.clone();
     joint.surroundings.control_rate = request.rate.unwrap_or(joint.surroundings.control_rate);
-    let made = make(&joint, &joint, request.control, request.plant, &Board::emulated())
-        .map_err(|failure| failure.while_doing(format_args!("tables of {}", loaded.name)))?;
+    let made = make(&joint, &joint, request.control, request.plant, &Board::emulated()).map_err(|failure| {
+        let help = if request.plant { HELP_OF_PLANT } else { HELP_OF_CONTROLLER };
+        failure.with_help(help).while_doing(format_args!("tables of {}", loaded.name))
+    })?;
     let tables = Tables { words: made.words.into(), ratio: joint.parameters.geometry.ratio_by_teeth() };
     Blob::open(&tables.words).map_err(unusable)?;
     Ok(tables)

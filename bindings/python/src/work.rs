@@ -1,6 +1,6 @@
 //! Long work without Python's lock, beside Ctrl-C.
 
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
 use std::time::Duration;
 
@@ -17,18 +17,59 @@ const SIGNAL_INTERVAL: Duration = Duration::from_millis(20);
 /// Held by the running work: a request to stop is for the whole process.
 static RUNNING: Mutex<()> = Mutex::new(());
 
-/// Runs work of the host's crates in a thread of its own. After Ctrl-C the exception is raised at once; the work is asked
-/// to stop, and the next work waits for its end.
+/// State of the work of one call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// Earlier work holds [`RUNNING`].
+    Waiting,
+    /// The work holds [`RUNNING`]: a request to stop reaches it and no other work.
+    Running,
+    /// The work has returned.
+    Ended,
+    /// The caller has left: waiting work must not begin.
+    Abandoned,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Begins work that holds [`RUNNING`]; false if its caller has left.
+fn begin(state: &Mutex<State>) -> bool {
+    let mut state = locked(state);
+    if *state == State::Abandoned {
+        return false;
+    }
+    *state = State::Running;
+    interruption::leave_to_host();
+    // A request may have come after the end of the work before.
+    interruption::request(false);
+    output::silence();
+    true
+}
+
+/// Abandons the work of a call: running work is asked to stop, waiting work never begins.
+fn abandon(state: &Mutex<State>) {
+    let mut state = locked(state);
+    if *state == State::Running {
+        interruption::request(true);
+    }
+    *state = State::Abandoned;
+}
+
+/// Runs work of the host's crates in a thread of its own. After Ctrl-C the exception is raised at once; running work is
+/// asked to stop, and the next work waits for its end; waiting work is dropped.
 pub fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> + Send + 'static) -> PyResult<T> {
     let (sender, receiver) = mpsc::channel();
+    let state = Arc::new(Mutex::new(State::Waiting));
+    let of_worker = Arc::clone(&state);
     let quiet_work = move || {
-        let _running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
-        interruption::leave_to_host();
-        // A request may have come after the end of the work before.
-        interruption::request(false);
-        output::silence();
-        let outcome = work();
-        let _ = sender.send(outcome);
+        let _running = locked(&RUNNING);
+        if begin(&of_worker) {
+            let outcome = work();
+            *locked(&of_worker) = State::Ended;
+            let _ = sender.send(outcome);
+        }
     };
     thread::Builder::new()
         .name("lostmotion".to_owned())
@@ -36,8 +77,7 @@ pub fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> 
         .map_err(|error| PyRuntimeError::new_err(format!("cannot start a thread: {error}")))?;
     let receiver = Mutex::new(receiver);
     loop {
-        let waited =
-            py.detach(|| receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(SIGNAL_INTERVAL));
+        let waited = py.detach(|| locked(&receiver).recv_timeout(SIGNAL_INTERVAL));
         match waited {
             Ok(outcome) => return failure::result(py, outcome),
             Err(mpsc::RecvTimeoutError::Disconnected) => {
@@ -45,10 +85,19 @@ pub fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> 
             }
             Err(mpsc::RecvTimeoutError::Timeout) => {
                 if let Err(signal) = py.check_signals() {
-                    interruption::request(true);
+                    abandon(&state);
                     return Err(signal);
                 }
             }
         }
     }
+}
+
+/// Runs short work in the calling thread, without Python's lock and beside long work.
+pub fn short<T: Send>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> + Send) -> PyResult<T> {
+    let outcome = py.detach(|| {
+        output::silence();
+        work()
+    });
+    failure::result(py, outcome)
 }

@@ -51,6 +51,29 @@ def test_useless_log_is_refused_with_help():
         identify("none.csv", qasi_static=True)
 
 
+def test_columns_of_unequal_length_are_named():
+    with pytest.raises(ValueError, match="time_s 10, motor_counts 9"):
+        identify({"time_s": np.arange(10), "motor_counts": np.zeros(9)})
+    with pytest.raises(ValueError, match=r"motor_counts has the shape \(\)"):
+        identify({"time_s": np.arange(10), "motor_counts": 3})
+
+
+def test_joint_of_a_slow_log_is_refused():
+    with pytest.raises(TypeError, match="leave out joint="):
+        identify("none.csv", "q1", quasi_static=True)
+    with pytest.raises(TypeError, match="leave out changes="):
+        identify("none.csv", changes={"half_backlash_um": 50}, quasi_static=True)
+
+
+def test_map_of_several_joints_names_the_keyword(tmp_path):
+    file = tmp_path / "map.toml"
+    file.write_text('[joints.knee.columns]\nmotor_counts = "k"\n[joints.hip.columns]\nmotor_counts = "h"\n')
+    for call in (lambda: identify("none.csv", map=str(file)), lambda: read_log("none.csv", map=file)):
+        with pytest.raises(JointError) as refused:
+            call()
+        assert "knee" in refused.value.message and "map_joint=" in refused.value.help
+
+
 def test_slow_log_gives_lost_motion():
     """Sweeps to and fro with a lost motion of 0.01 rad at the output."""
     time_s = np.arange(0, 120, 0.01)

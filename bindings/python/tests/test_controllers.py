@@ -44,8 +44,13 @@ def reversals(seconds, amplitude=0.3, frequency=2.0):
 def test_closed_loop_has_the_bits_of_the_core(name):
     period = np.arange(BITS["periods"])
     load = np.where(period // 1100 % 2 == 0, 1.0, -1.0).astype(np.float32)
-    zero = np.zeros(len(period))
-    loop = closed_loop(Plant(name), Controller(name), Motion(zero, zero, zero), load)
+    # A motion to and fro, with the operations in the order of the Rust half.
+    phase = period % 2000 / 2000
+    rest = 1.0 - phase
+    position = 0.48 * phase * phase * rest * rest
+    speed = 4.8 * phase * rest * (rest - phase)
+    acceleration = 24.0 * (rest * rest - 4.0 * phase * rest + phase * phase)
+    loop = closed_loop(Plant(name), Controller(name), Motion(position, speed, acceleration), load)
     torque = np.ascontiguousarray(loop.controller["torque_N_m"])
     assert chained(torque) == BITS["joints"][name]["controller"]
 
@@ -123,10 +128,45 @@ def test_mismatches_are_named():
         closed_loop(Plant("q1"), Observer("q1"), steps=10)
 
 
+def test_interrupted_controller_goes_on_with_its_own_clock():
+    """A controller that has seen 500 periods meets plants at time zero: its clock goes on, and it sees no jump."""
+    used, rows = Controller("q1"), 500
+    start = Plant("q1").state(["motor_counts", "output_counts"])
+    still = [np.full(rows, start[name][0]) for name in ("motor_counts", "output_counts")]
+    used.step(*still, 0.0, record=())
+    loop = closed_loop(Plant("q1"), used, steps=100, record=None, record_controllers=None)
+    assert (loop.controller["source"] == 2).all()
+    whole = Controller("q1")
+    whole.step(*still, 0.0, record=())
+    before = {name: np.concatenate([start[name], loop.plant[name][:-1]]) for name in start}
+    torque = np.concatenate([[0.0], loop.controller["torque_N_m"][:-1]])
+    same = whole.step(before["motor_counts"], before["output_counts"], torque)
+    for name, values in same.items():
+        assert np.array_equal(values, loop.controller[name]), name
+
+
+def test_motion_ahead_ends_with_the_array():
+    """Near its end a motion is as unknown ahead as without a preview."""
+    position = reversals(0.3)
+    lead = round(Controller("q1").lead_s * RATE)
+    assert lead > 1
+    ends, goes_on = Controller("q1"), Controller("q1")
+    known = len(position) - lead
+    counts = np.zeros(len(position), dtype=np.uint32)
+    motion = Motion(position, np.gradient(position) * RATE, np.zeros_like(position))
+    cut = Motion(*(values[:-10] for values in (motion.position, motion.speed, motion.acceleration)))
+    whole = goes_on.step(counts, counts, 0.0, motion)
+    part = ends.step(counts[:-10], counts[:-10], 0.0, cut)
+    assert np.array_equal(part["torque_N_m"][: known - 10], whole["torque_N_m"][: known - 10])
+
+
 def test_thousand_loops_on_all_cores():
     n, periods = 1000, 1000
     plants, controllers = Plants("q1", n=n), Controllers("q1", n=n)
     begin = time.monotonic()
-    closed_loop(plants, controllers, Motion(reversals(0.1)), every=10)
+    loop = closed_loop(plants, controllers, Motion(reversals(0.1)), every=10)
     seconds = time.monotonic() - begin
     print(f"\n{n} closed loops on {os.cpu_count()} cores: {n * periods / seconds / 1e6:.2f} million periods a second")
+    alone = closed_loop(Plant("q1"), Controller("q1"), Motion(reversals(0.1)), every=10)
+    assert (loop.controller["torque_N_m"] == alone.controller["torque_N_m"][:, np.newaxis]).all()
+    assert (loop.plant["link_angle_rad"][-1] == alone.plant["link_angle_rad"][-1]).all()

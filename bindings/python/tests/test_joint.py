@@ -1,14 +1,27 @@
 """Joints: sources, changes, errors with place and help."""
 
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
 import pytest
 
 import lostmotion
-from lostmotion import Joint, JointError
+from lostmotion import Controllers, Joint, JointError, Plant, Plants
+from lostmotion._joint import toml_text
 
-C1 = {
-    "name": "belt",
-    "rated_output_torque_N_m": 20.0,
-}
+
+SHEET = dict(
+    ratio=9,
+    lost_motion_arcmin=15,
+    stiffness_Nm_per_arcmin=1.8,
+    rated_torque_Nm=8,
+    rotor_inertia_kg_cm2=0.32,
+    no_load_torque_Nm=0.05,
+    efficiency=0.94,
+)
 
 
 def test_preset_has_its_figures():
@@ -60,15 +73,7 @@ def test_dictionary_is_a_joint_file():
 
 
 def test_data_sheet_makes_a_joint():
-    sheet = dict(
-        ratio=9,
-        lost_motion_arcmin=15,
-        stiffness_Nm_per_arcmin=1.8,
-        rated_torque_Nm=8,
-        rotor_inertia_kg_cm2=0.32,
-        no_load_torque_Nm=0.05,
-        efficiency=0.94,
-    )
+    sheet = SHEET
     joint = Joint.from_data_sheet("elbow", **sheet)
     assert joint.ratio == pytest.approx(9, rel=0.02) and joint.name == "elbow"
     with pytest.raises(JointError, match="efficiency"):
@@ -77,4 +82,65 @@ def test_data_sheet_makes_a_joint():
 
 def test_figures_are_those_of_check():
     figures = Joint("q1").figures()
-    assert figures and all(isinstance(key, str) for key in figures)
+    gap, wider = (it["output"]["lost_motion_arcmin"] for it in (figures, Joint("q1", {"half_backlash_um": 80}).figures()))
+    assert wider == pytest.approx(2 * gap, rel=1e-6)
+
+
+def test_equal_joints_are_read_and_designed_once():
+    begin = time.monotonic()
+    assert len(Plants("q1", n=1000)) == 1000
+    one = time.monotonic() - begin
+    begin = time.monotonic()
+    plants = Plants(["q1"] * 500 + [Joint("q1")] * 250 + [Joint("q1") for _ in range(250)])
+    many = time.monotonic() - begin
+    assert len(plants) == 1000 and many < 20 * one + 1, f"{one:.2f} s for one joint, {many:.2f} s for equal ones"
+
+
+def test_every_form_of_a_joint_is_accepted(tmp_path):
+    file = tmp_path / "mine.toml"
+    Joint("q1").save(file)
+    expected = Plant("q1").tables()
+    for form in (file, str(file), Joint("q1"), Joint(Joint("q1"))):
+        assert Plant(form).tables() == expected
+        assert Plants(form, n=2).tables(1) == Plants([form, form]).tables(1) == expected
+    with pytest.raises(TypeError, match="not a int"):
+        Joint(3)
+
+
+def test_keys_of_a_joint_are_looked_up():
+    joint = Joint("q1")
+    assert "half_backlash_um" in joint and "half_backlsh_um" not in joint and 3 not in joint
+
+
+def test_numbers_of_numpy_are_toml():
+    values = {"a": np.bool_(True), "b": np.float64(1.5), "c": np.int64(3), "d": np.array([1.0, 2.0])}
+    assert toml_text(values) == "a = true\nb = 1.5\nc = 3\nd = [1.0, 2.0]\n"
+
+
+def test_changed_value_names_its_origin():
+    text = Joint("q1", {"half_backlash_um": 60}).text
+    assert "# set in Python" in text and "command line" not in text
+
+
+def test_help_of_a_refused_rate_is_in_words_of_python():
+    for kind in (Plants, Controllers):
+        with pytest.raises(JointError) as refused:
+            kind("q1", n=1, rate=300)
+        assert "rate=" in refused.value.help and "--" not in refused.value.help
+
+
+def test_missing_figure_of_a_data_sheet_is_named_and_not_asked_for():
+    """With a terminal as standard input, the compiled command would ask."""
+    terminal, of_child = os.openpty()
+    program = "import lostmotion\ntry: lostmotion.Joint.from_data_sheet('elbow', ratio=9)\nexcept lostmotion.JointError as e: print(e)"
+    ended = subprocess.run([sys.executable, "-c", program], stdin=of_child, capture_output=True, text=True, timeout=60)
+    os.close(terminal)
+    os.close(of_child)
+    assert "lacks" in ended.stdout and "terminal" not in ended.stdout, ended
+
+
+def test_remarks_on_a_data_sheet_are_warnings():
+    sheet = dict(SHEET, motor_peak_torque_Nm=0.1)
+    with pytest.warns(UserWarning, match="elbow"):
+        joint = Joint.from_data_sheet("some/folder/elbow", **sheet)
+    assert joint.name == "elbow"

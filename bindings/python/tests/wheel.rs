@@ -1,6 +1,7 @@
 //! The Python wheel, built as for a release, installed on a machine without Rust and driven by Python: the module, the
 //! command, the notebook, and the bits of the core. In release this test shares its build with the wheel.
 
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -18,11 +19,23 @@ use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 /// Version of maturin that the wheel is built with.
 const MATURIN: &str = "maturin==1.16.0";
 /// Packages of the tests, with pytest and what runs a notebook.
-const PACKAGES: [&str; 7] = ["numpy", "pytest", "pandas", "matplotlib", "nbclient", "ipykernel", "mypy"];
+const PACKAGES: [&str; 7] = [
+    "numpy==2.4.6",
+    "pytest==9.2.0",
+    "pandas==3.1.1",
+    "matplotlib==3.11.2",
+    "nbclient==0.11.0",
+    "ipykernel==7.4.0",
+    "mypy==2.4.1",
+];
+/// Version of the tool that names the oldest C library of the wheel.
+const AUDITWHEEL: &str = "auditwheel==6.8.2";
 /// Joints whose bits are compared: gears with planets, and an equivalent gear.
 const JOINTS: [&str; 4] = ["q1", "s1", "l1", "c1"];
 /// Periods of the comparison.
 const PERIODS: u32 = 20_000;
+/// Periods of a motion to and fro.
+const MOTION_PERIODS: u32 = 2000;
 /// Longest time to install the wheel and the packages that it depends on [s].
 const INSTALL_MAX: u64 = 60;
 
@@ -54,7 +67,20 @@ fn torques(period: u32) -> (f32, f32) {
     (0.25 * sign(700), sign(1100))
 }
 
-/// Digest of a plant under the torques, and torques of the compensation that holds the joint under the loads.
+/// Set-point of a period: a motion to and fro, with the operations in the order of the Python half.
+fn motion(period: u32) -> Motion<f32> {
+    let phase = f64::from(period % MOTION_PERIODS) / f64::from(MOTION_PERIODS);
+    let rest = 1.0 - phase;
+    let position = 0.48 * phase * phase * rest * rest;
+    let turns = (position / TAU).round();
+    Motion {
+        position: Position { turns: turns as i32, fraction: (position / TAU - turns) as f32 },
+        speed: (4.8 * phase * rest * (rest - phase)) as f32,
+        acceleration: (24.0 * (rest * rest - 4.0 * phase * rest + phase * phase)) as f32,
+    }
+}
+
+/// Digest of a plant under the torques, and torques of the compensation that follows a motion under the loads.
 fn bits<const N: usize>(
     gears: &Tables<f32, N>,
     around: &SurroundingsTable<f32>,
@@ -70,9 +96,11 @@ fn bits<const N: usize>(
     let mut observer = Observer::<f32, MAPPED>::new(blob.observer().expect("a part"));
     let mut compensation = Compensation::new(blob.compensation().expect("a part"));
     let mut running = START;
+    let header = blob.header();
+    let lead = (blob.compensation().expect("a part").crossing.lead * header.control_rate as f32).round() as u32;
     for period in 0..PERIODS {
-        let now = Motion { position: Position { turns: 0, fraction: 0.0 }, speed: 0.0, acceleration: 0.0 };
-        let command = SetPoint::Position { now, ahead: Some(now) };
+        let ahead = (period + lead < PERIODS).then(|| motion(period + lead));
+        let command = SetPoint::Position { now: motion(period), ahead };
         let done = compensation.step(observer.step(&plant.samples()), &command);
         plant.advance(done.torque, torques(period).1);
         running = chain(running, done.torque.to_bits().into());
@@ -112,7 +140,7 @@ fn wheel_passes_its_tests_without_rust() {
     fs::write(&bits, expected_bits()).expect("a file");
     let wheels = place.join("wheels");
     let _ = fs::remove_dir_all(&wheels);
-    let tools = environment(&place.join("tools"), &[MATURIN, "auditwheel"]);
+    let tools = environment(&place.join("tools"), &[MATURIN, AUDITWHEEL]);
     let begin = Instant::now();
     let build = ["-m", "maturin", "build", "--release", "--locked", "--out"];
     println!("{}", succeeded(Command::new(&tools).args(build).arg(&wheels).current_dir(bindings())));

@@ -35,11 +35,11 @@ use swing::Swing;
 /// Step rate of the check of the new joint, as in `joint check` and `joint sim` [Hz].
 const CHECK_RATE: u32 = 20_000;
 
-/// Makes the joint file; returns the printed text.
-pub fn run(arguments: &Arguments) -> Outcome<String> {
+/// Makes the joint file; returns the printed text. `may_ask` allows questions for missing figures on a terminal.
+pub fn run(arguments: &Arguments, may_ask: bool) -> Outcome<String> {
     let path = arguments.path();
     check_free(&path)?;
-    let sheet = questions::complete(arguments)?;
+    let sheet = questions::complete(arguments, may_ask)?;
     let gears = Gears::derive(&sheet).map_err(|failure| {
         let help = failure.help().unwrap_or_default().to_owned();
         failure.with_help(format!("{help}\n{}", arguments.equivalent_gear_help()))

@@ -54,8 +54,8 @@ const OPTIONAL_FIGURES: [Figure; 6] = [
     figure("--ratio-tolerance", "", 0.0, 20.0),
 ];
 
-/// Completes the sheet.
-pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
+/// Completes the sheet; asks for missing figures on a terminal if `may_ask` allows it.
+pub fn complete(arguments: &Arguments, may_ask: bool) -> Outcome<DataSheet> {
     let stem = match arguments.name.extension() {
         Some(extension) if extension == "toml" => arguments.name.file_stem(),
         _ => arguments.name.file_name(),
@@ -80,8 +80,9 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         Some(arguments.ratio_tolerance),
     ];
     let stdin = io::stdin();
+    let asks = may_ask && stdin.is_terminal();
     // If the ratio is asked for too, the teeth may be unknown as well.
-    let asked = arguments.ratio.is_none() && !arguments.states_teeth() && stdin.is_terminal();
+    let asked = arguments.ratio.is_none() && !arguments.states_teeth() && asks;
     let equivalent = arguments.equivalent || (asked && ask_kind(&mut stdin.lock())? == GEAR_KINDS[1]);
     let mut needed = REQUIRED_FIGURES;
     if equivalent {
@@ -99,9 +100,14 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     }
     let missing: Vec<&str> =
         needed.iter().zip(given).filter(|(_, value)| value.is_none()).map(|(figure, _)| figure.option).collect();
-    if !missing.is_empty() && !stdin.is_terminal() {
-        return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
-            .with_help("give each with its figure; a terminal session asks for them"));
+    if !missing.is_empty() && !asks {
+        return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", "))).with_help(
+            if may_ask {
+                "give each with its figure; a terminal session asks for them"
+            } else {
+                "give each with its figure"
+            },
+        ));
     }
     let mut figures = [0.0; REQUIRED_FIGURES.len()];
     for ((figure, value), place) in needed.iter().zip(given).zip(&mut figures) {

@@ -51,7 +51,7 @@ pub fn read_changed(name: String, mut text: String, changes: &[String]) -> Outco
 }
 
 /// Name and text of a path or a preset.
-fn text(file: &Path) -> Outcome<(String, String)> {
+pub fn text(file: &Path) -> Outcome<(String, String)> {
     let name = file.display().to_string();
     let text = match input::preset(file, crate::preset) {
         Some(text) => text.to_owned(),

@@ -6,5 +6,5 @@ use report::output;
 
 /// Writes the joint file and prints the assumptions that it rests on.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    output::print(&data_sheet::run(arguments)?)
+    output::print(&data_sheet::run(arguments, true)?)
 }

@@ -8,9 +8,10 @@ from typing import Any, Sequence
 import numpy as np
 
 from . import _native, _controllers, _plants
-from ._columns import Columns, allocated, periods_of, spread, time_axis
+from ._columns import Columns, allocated, checked_every, periods_of, spread, time_axis
 from ._controllers import Controllers, Impedance, Motion
 from ._plants import Plant, Plants, flat
+from ._process import claim
 
 
 @dataclass
@@ -47,7 +48,8 @@ def closed_loop(
             out.
         load: torques that brake the links [N m], of the same shapes.
         steps: number of periods, if nothing is an array.
-        preview: True reads a motion ahead by `controllers.lead_s`, as far as the array goes.
+        preview: True reads each joint's motion ahead by its `controllers.lead_s`. In the last `lead_s` of the array the
+            motion ahead is unknown.
         every: periods per recorded row.
         record: names of the plants' recorded quantities; None records all.
         record_controllers: names of the controllers' recorded quantities; None records all.
@@ -59,15 +61,16 @@ def closed_loop(
         raise ValueError(f"the plants run at {plants.rate_Hz} Hz and the controllers at {controllers.rate_Hz} Hz")
     if not controllers.has_compensation:
         raise ValueError("an observer commands no torque: pass a Controller")
-    if every < 1:
-        raise ValueError("every must be 1 or more")
-    n, position = len(plants), None if set_point is None else set_point.position
-    periods = periods_of([position, load], steps)
+    if len(plants) != len(controllers):
+        raise ValueError(f"{len(plants)} plants and {len(controllers)} controllers")
+    claim()
+    n, every = len(plants), checked_every(every)
+    periods = periods_of({**_controllers.named(set_point), "load": load}, steps)
     angle, rest = _controllers.arrays_of(set_point, periods, n, plants.rate_Hz)
     shape = (periods // every, n)
     of_plants = allocated(_plants.QUANTITIES, record, None, shape)
     of_controllers = allocated(_controllers.QUANTITIES, record_controllers, None, shape)
-    load = spread(load, np.float32, periods, n)
+    load = spread("load", load, np.float32, periods, n)
     _native.run(plants.native, controllers.native, angle, rest, load, preview, every, of_plants, of_controllers)
     time = time_axis(periods, every, plants.rate_Hz)
     columns = [Columns(dict(of_plants), time), Columns(dict(of_controllers), time)]

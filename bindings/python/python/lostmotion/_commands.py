@@ -13,7 +13,8 @@ from typing import Any, Mapping
 from . import _native
 from ._columns import Columns
 from ._command import DATA
-from ._joint import Joint, assignments, options
+from ._joint import Joint, JointLike, as_joint, assignments, options
+from ._process import claim
 
 
 @dataclass
@@ -38,7 +39,7 @@ class Identification:
 
 def identify(
     log: str | os.PathLike[str] | Mapping[str, Any],
-    joint: Joint | str = "q1",
+    joint: JointLike | None = None,
     *,
     changes: Mapping[str, Any] | None = None,
     **keywords: Any,
@@ -48,16 +49,21 @@ def identify(
     Args:
         log: path of a log (CSV, MCAP), or columns by name: `time_s`, `motor_counts` or `motor_angle_rad`,
             `output_counts` or `output_angle_rad`, `motor_torque_N_m`; arrays of the shape (rows,).
-        joint: joint that gives teeth, levers and inertias.
+        joint: joint that gives teeth, levers and inertias; q1 if left out.
         changes: values of the joint to be changed first, by key.
-        keywords: further options of the command, with underscores: `quasi_static=True`, `gear_ratio=6`,
-            `output_locked=True`, `map="moteus"`, `column=["motor_counts=pos_raw"]`, `unit=["motor_angle=turns"]`.
+        keywords: further options of the command, with underscores: `quasi_static=True` (without `joint` and `changes`),
+            `gear_ratio=6`, `output_locked=True`, `map="moteus"`, `map_joint="knee"` for a map of several joints, `column=["motor_counts=pos_raw"]`, `unit=["motor_angle=turns"]`.
 
     Raises:
         JointError: if the log determines nothing; says which rows and what to record.
         KeyboardInterrupt: after Ctrl-C, at once.
     """
-    with tempfile.TemporaryDirectory() as name:
+    claim()
+    quasi_static = keywords.get("quasi_static")
+    for unused, value in (("joint", joint), ("changes", changes)):
+        if quasi_static and value is not None:
+            raise TypeError(f"quasi_static=True reads angles alone: leave out {unused}=, and pass gear_ratio=")
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         if isinstance(log, Mapping):
             path = folder / "columns.csv"
@@ -65,9 +71,8 @@ def identify(
         else:
             path = Path(log)
         words = [os.fspath(path), f"--out={folder / 'out'}", *options(keywords)]
-        if not keywords.get("quasi_static"):
-            of_joint = joint if isinstance(joint, Joint) else Joint(joint)
-            of_joint.save(folder / "joint.toml")
+        if not quasi_static:
+            as_joint("q1" if joint is None else joint).save(folder / "joint.toml")
             words += [f"--joint={folder / 'joint.toml'}", *(f"--set={it}" for it in assignments(changes))]
         _native.identify(words)
         out = folder / "out"
@@ -78,6 +83,15 @@ def identify(
 
 
 def _write_columns(path: Path, columns: Mapping[str, Any]) -> None:
+    import numpy as np
+
+    shapes = {name: np.shape(values) for name, values in columns.items()}
+    for name, shape in shapes.items():
+        if len(shape) != 1:
+            raise ValueError(f"column {name} has the shape {shape}, not (rows,)")
+    if len(set(shapes.values())) > 1:
+        listed = ", ".join(f"{name} {rows}" for name, (rows,) in shapes.items())
+        raise ValueError(f"the columns have different numbers of rows: {listed}")
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
@@ -139,10 +153,11 @@ def run_tests(
         JointError: with the place, if a file cannot be used.
         KeyboardInterrupt: after Ctrl-C, at once.
     """
+    claim()
     file = Path(path)
     if not file.exists() and file.parts[:1] == ("hil",):
         file = DATA / file
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         out = Path(name) / "out"
         passed = _native.run_tests(os.fspath(file), None if seed is None else str(seed), plant, full, os.fspath(out))
         record = json.loads((out / "record.json").read_text(encoding="utf-8"))
@@ -156,6 +171,7 @@ def read_log(
     *,
     topic: str | None = None,
     map: str | os.PathLike[str] | None = None,
+    map_joint: str | None = None,
     ratio: float = 1.0,
 ) -> Columns:
     """Reads a log (CSV or MCAP) as columns of numbers.
@@ -165,11 +181,12 @@ def read_log(
         topic: topic of an MCAP log whose fields are read under their own names; without it the topic with motor, output
             and torque is read, in SI.
         map: names and units of a maker's columns: a file, or one of the maps of `joint identify --map`.
+        map_joint: joint of a map of several joints.
         ratio: motor turns per turn of the output, for columns that are given at the output.
 
     Returns:
         float64 arrays of the shape (rows,); NaN where a value is missing.
     """
-    found = _native.log_columns(os.fspath(path), topic, None if map is None else os.fspath(map), ratio)
+    found = _native.log_columns(os.fspath(path), topic, None if map is None else os.fspath(map), map_joint, ratio)
     columns = dict(found)
     return Columns(columns, columns.get("time_s"))

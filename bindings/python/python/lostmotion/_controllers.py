@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Mapping, Sequence
+from typing import Any, Mapping, NoReturn, Sequence
 
 import numpy as np
 
 from . import _native
-from ._columns import Columns, allocated, periods_of, spread, time_axis
-from ._joint import Joint
-from ._plants import flat, joints_of
+from ._columns import Columns, allocated, checked_every, periods_of, spread, spread_counts, time_axis
+from ._joint import JointLike
+from ._plants import flat, joints_of, with_joints
+from ._process import claim
 
 QUANTITIES = _native.CONTROLLER_COLUMNS
 """Recorded quantities of a controller: names, and types of numpy. Codes: `stage` 0 touching, 1 crossing, 2 landing,
@@ -26,7 +27,7 @@ USUAL_OF_OBSERVERS = ("gap_m", "gap_valid", "half_backlash_m", "half_backlash_va
 SetPointArrays = tuple["np.ndarray[Any, Any] | None", list["np.ndarray[Any, Any]"]]
 
 
-@dataclass
+@dataclass(eq=False)
 class Motion:
     """Motion that the links follow; arrays of the shape (periods, n), or (periods,) for all alike.
 
@@ -42,15 +43,19 @@ class Motion:
 
     def arrays(self, periods: int, n: int, rate: int) -> SetPointArrays:
         """Arrays of the compiled half."""
-        position = np.asarray(self.position, dtype=np.float64)
-        slope = (lambda of: np.gradient(of, axis=0) * rate) if np.ndim(position) > 0 and len(position) > 1 else np.zeros_like
-        speed = slope(position) if self.speed is None else np.asarray(self.speed)
-        acceleration = slope(speed) if self.acceleration is None and np.ndim(speed) > 0 else self.acceleration
-        rest = [speed, 0.0 if acceleration is None else acceleration]
-        return spread(position, np.float64, periods, n), [spread(it, np.float32, periods, n) for it in rest]
+        speed = _slope(self.position, rate) if self.speed is None else self.speed
+        acceleration = _slope(speed, rate) if self.acceleration is None else self.acceleration
+        rest = {"speed": speed, "acceleration": acceleration}
+        return _spread_set_point(self.position, rest, periods, n)
 
 
-@dataclass
+def _slope(values: Any, rate: int) -> "np.ndarray[Any, Any]":
+    """Difference quotients over the rows; zero without a second row."""
+    array = np.asarray(values, dtype=np.float64)
+    return np.gradient(array, axis=0) * rate if array.ndim > 0 and len(array) > 1 else np.zeros_like(array)
+
+
+@dataclass(eq=False)
 class Impedance:
     """Springs and dampers about moving points; numbers, or arrays of the shape (periods, n) or (periods,).
 
@@ -70,8 +75,19 @@ class Impedance:
 
     def arrays(self, periods: int, n: int, rate: int) -> SetPointArrays:
         """Arrays of the compiled half."""
-        rest = [self.speed, self.torque, self.stiffness, self.damping]
-        return spread(self.position, np.float64, periods, n), [spread(it, np.float32, periods, n) for it in rest]
+        rest = {"speed": self.speed, "torque": self.torque, "stiffness": self.stiffness, "damping": self.damping}
+        return _spread_set_point(self.position, rest, periods, n)
+
+
+def _spread_set_point(position: Any, rest: Mapping[str, Any], periods: int, n: int) -> SetPointArrays:
+    angle = spread("set-point's position", position, np.float64, periods, n)
+    return angle, [spread(f"set-point's {name}", it, np.float32, periods, n) for name, it in rest.items()]
+
+
+def named(set_point: "Motion | Impedance | None") -> dict[str, Any]:
+    """Arrays of a set-point as passed by the caller, by name."""
+    values = {} if set_point is None else vars(set_point)
+    return {f"set-point's {name}": value for name, value in values.items() if value is not None}
 
 
 def arrays_of(set_point: "Motion | Impedance | None", periods: int, n: int, rate: int) -> SetPointArrays:
@@ -99,13 +115,14 @@ class Controllers:
 
     def __init__(
         self,
-        joint: "Joint | str | Sequence[Joint | str]",
+        joint: "JointLike | Sequence[JointLike]",
         n: int | None = None,
         *,
         rate: int | None = None,
         bandwidth: float | None = None,
         output_encoder: bool = True,
     ) -> None:
+        claim()
         joints, count = joints_of(joint, n)
         self.native = _native.Controllers(joints, count, rate, bandwidth, output_encoder, self.has_compensation)
 
@@ -117,10 +134,18 @@ class Controllers:
         """Control rate [Hz]."""
         return self.native.rate
 
+    def __reduce_ex__(self, protocol: Any) -> NoReturn:
+        raise TypeError(
+            "a controller is not copied or pickled: make a new one of the same joint, and give it the estimated parameters "
+            "by new.load(old.save())"
+        )
+
     @property
-    def lead_s(self) -> float:
-        """Time by which a motion is read ahead if it is known [s]."""
-        return self.native.lead
+    def lead_s(self) -> Any:
+        """Times by which motions are read ahead [s]: shape (n,), or a number for a `Controller`."""
+        if not self.has_compensation:
+            raise AttributeError("an observer follows no motion: lead_s is a quantity of controllers")
+        return np.array(self.native.leads)
 
     def step(
         self,
@@ -138,10 +163,11 @@ class Controllers:
 
         Args:
             motor_counts: counts of the motors' encoders within their turn, uint32, shape (periods, n) or (periods,).
-            output_counts: counts of the outputs' encoders, or None for no reading.
+            output_counts: counts of the outputs' encoders, or None for no reading; NaN is no reading in that period.
             torque: torques commanded in the periods before [N m], of the same shape.
             set_point: `Motion` or `Impedance`; angle zero is held if left out.
-            preview: True reads a motion ahead by `lead_s`, as far as the array goes.
+            preview: True reads each joint's motion ahead by its `lead_s`. In the last `lead_s` of the array the motion
+                ahead is unknown: for one motion in several calls, pass True only with rows enough for one call.
             every: periods per recorded row.
             record: names of the recorded quantities; None records all.
             out: arrays of the shape (periods // every, n) to be filled in place, by name.
@@ -149,14 +175,21 @@ class Controllers:
         Returns:
             Arrays of the shape (periods // every, n): row i has the outputs of period (i + 1) * every.
         """
-        periods, n = periods_of([motor_counts], None), len(self)
-        if every < 1:
-            raise ValueError("every must be 1 or more")
+        claim()
+        given = {"motor_counts": motor_counts, "torque": torque, **named(set_point)}
+        periods = periods_of(given if output_counts is None else {"output_counts": output_counts, **given}, None)
+        n, every = len(self), checked_every(every)
         position, rest = arrays_of(set_point, periods, n, self.rate_Hz)
-        arrays = allocated(QUANTITIES, record if out is None else None, out, (periods // every, n))
-        counts = None if output_counts is None else spread(output_counts, np.uint32, periods, n)
-        motor, torque = spread(motor_counts, np.uint32, periods, n), spread(torque, np.float32, periods, n)
-        self.native.step(motor, counts, torque, position, rest, preview, every, arrays)
+        motor, _ = spread_counts("motor_counts", motor_counts, periods, n)
+        counts, missing = (
+            (None, None)
+            if output_counts is None
+            else spread_counts("output_counts", output_counts, periods, n, gaps=True)
+        )
+        torque = spread("torque", torque, np.float32, periods, n)
+        inputs = [motor, counts, torque, position, *rest]
+        arrays = allocated(QUANTITIES, record if out is None else None, out, (periods // every, n), inputs)
+        self.native.step(motor, counts, missing, torque, position, rest, preview, every, arrays)
         return Columns(dict(arrays), time_axis(periods, every, self.rate_Hz))
 
     def reset(self) -> None:
@@ -175,10 +208,20 @@ class Controllers:
 class Observers(Controllers):
     """Observers of many joints: estimates of gap, backlash, contact and torques, without a compensation.
 
-    Arguments as for `Controllers`.
+    Arguments as for `Controllers`, without the bandwidth, which is the compensation's.
     """
 
     has_compensation = False
+
+    def __init__(
+        self,
+        joint: "JointLike | Sequence[JointLike]",
+        n: int | None = None,
+        *,
+        rate: int | None = None,
+        output_encoder: bool = True,
+    ) -> None:
+        super().__init__(joint, n, rate=rate, output_encoder=output_encoder)
 
     def step(  # type: ignore[override]
         self,
@@ -193,6 +236,9 @@ class Observers(Controllers):
         """Runs a control period per row over samples; arguments and result as in `Controllers.step`."""
         if record is None and out is None:
             record = tuple(name for name, _ in QUANTITIES if name not in OF_COMPENSATION)
+        for name in (record if out is None else out) or ():
+            if name in OF_COMPENSATION:
+                raise KeyError(f"{name!r} is a quantity of controllers: an observer does not have it")
         return super().step(motor_counts, output_counts, torque, None, every=every, record=record, out=out)
 
 
@@ -201,13 +247,18 @@ class Controller(Controllers):
 
     def __init__(
         self,
-        joint: Joint | str,
+        joint: JointLike,
         *,
         rate: int | None = None,
         bandwidth: float | None = None,
         output_encoder: bool = True,
     ) -> None:
         super().__init__(joint, 1, rate=rate, bandwidth=bandwidth, output_encoder=output_encoder)
+
+    @property
+    def lead_s(self) -> float:
+        """Time by which a motion is read ahead [s]."""
+        return self.native.leads[0]
 
     def step(
         self,
@@ -222,10 +273,9 @@ class Controller(Controllers):
         out: Mapping[str, "np.ndarray[Any, Any]"] | None = None,
     ) -> Columns:
         """Runs a control period per element; arguments as in `Controllers.step`, arrays of the shape (periods,)."""
-        filled = None if out is None else {name: values[:, np.newaxis] for name, values in out.items()}
         return flat(
             super().step(
-                motor_counts, output_counts, torque, set_point, preview=preview, every=every, record=record, out=filled
+                motor_counts, output_counts, torque, set_point, preview=preview, every=every, record=record, out=with_joints(out)
             )
         )
 
@@ -233,7 +283,7 @@ class Controller(Controllers):
 class Observer(Observers):
     """Observer of one joint: as `Observers`, with arrays of the shape (periods,)."""
 
-    def __init__(self, joint: Joint | str, *, rate: int | None = None, output_encoder: bool = True) -> None:
+    def __init__(self, joint: JointLike, *, rate: int | None = None, output_encoder: bool = True) -> None:
         super().__init__(joint, 1, rate=rate, output_encoder=output_encoder)
 
     def step(  # type: ignore[override]
@@ -247,5 +297,4 @@ class Observer(Observers):
         out: Mapping[str, "np.ndarray[Any, Any]"] | None = None,
     ) -> Columns:
         """Runs a control period per element; arguments as in `Controllers.step`, arrays of the shape (periods,)."""
-        filled = None if out is None else {name: values[:, np.newaxis] for name, values in out.items()}
-        return flat(super().step(motor_counts, output_counts, torque, every=every, record=record, out=filled))
+        return flat(super().step(motor_counts, output_counts, torque, every=every, record=record, out=with_joints(out)))

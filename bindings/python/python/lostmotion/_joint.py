@@ -5,10 +5,15 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import warnings
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Iterable, Iterator, Mapping, Union
+
+import numpy as np
 
 from . import _native
+from ._errors import JointError
+from ._process import claim
 
 PRESETS: tuple[str, ...] = tuple(_native.PRESETS)
 """Names of the joints that come with the package."""
@@ -16,7 +21,7 @@ PRESETS: tuple[str, ...] = tuple(_native.PRESETS)
 
 def toml_value(value: Any) -> str:
     """Value as TOML."""
-    if isinstance(value, bool):
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
@@ -47,7 +52,7 @@ class Joint:
     """Joint with its drive train, encoders and load.
 
     Args:
-        source: name of a preset (`PRESETS`), path of a joint file, or a dictionary with the keys of a joint file, each
+        source: name of a preset (`PRESETS`), path of a joint file, a `Joint`, or a dictionary with the keys of a joint file, each
             with its unit in the name: `{"name": ..., "mesh": {"half_backlash_um": 40, ...}, ...}`.
         changes: values to be changed, by key: `{"half_backlash_um": 60}`.
 
@@ -58,10 +63,14 @@ class Joint:
     native: _native.Joint
 
     def __init__(
-        self, source: str | os.PathLike[str] | Mapping[str, Any] = "q1", changes: Mapping[str, Any] | None = None
+        self, source: "JointLike" = "q1", changes: Mapping[str, Any] | None = None
     ) -> None:
-        if isinstance(source, Mapping):
+        if isinstance(source, Joint):
+            self.native = source.native if not changes else source.changed(changes).native
+        elif isinstance(source, Mapping):
             self.native = _native.Joint.parse("dictionary", toml_text(source), assignments(changes))
+        elif not isinstance(source, (str, os.PathLike)):
+            raise TypeError(f"a joint is a preset, a path, a dictionary or a Joint, not a {type(source).__name__}")
         else:
             self.native = _native.Joint.load(os.fspath(source), assignments(changes))
 
@@ -74,7 +83,9 @@ class Joint:
 
     @classmethod
     def from_data_sheet(cls, name: str, **figures: Any) -> "Joint":
-        """Joint from the figures of a data sheet, as `joint new` makes it.
+        """Joint from the figures of a data sheet, as `joint new` makes it; missing figures are named, never asked for.
+
+        Odd figures that are usable, such as a link heavier than the motor can move, are Python warnings.
 
         Args:
             name: name of the joint.
@@ -83,10 +94,16 @@ class Joint:
                 `no_load_torque_Nm=0.05`, `efficiency=0.94`; `equivalent=True` for a gear without known teeth.
         """
         figures.setdefault("no_measure", True)
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder, f"{name}.toml")
-            _native.joint_from_data_sheet([str(file), *options(figures)])
-            return cls.from_text(file.read_text(encoding="utf-8"), name)
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+            file = Path(folder, f"{Path(name).name}.toml")
+            claim()
+            printed = _native.joint_from_data_sheet([str(file), *options(figures)])
+            joint = cls.from_text(file.read_text(encoding="utf-8"), file.stem)
+        remarks = [line.removeprefix("note: ") for line in printed.splitlines() if line.startswith("note: ")]
+        remarks += [f"line {line}: {message} ({remedy})" for line, message, remedy in joint.warnings]
+        for remark in remarks:
+            warnings.warn(f"{joint.name}: {remark}", stacklevel=2)
+        return joint
 
     def changed(self, changes: Mapping[str, Any]) -> "Joint":
         """Joint with values changed, by key; an empty string leaves a key out."""
@@ -101,6 +118,19 @@ class Joint:
             return float(value.replace("_", ""))
         except ValueError:
             return value.strip("\"'")
+
+    def __contains__(self, key: object) -> bool:
+        """Returns True if the joint file states the key."""
+        try:
+            return isinstance(key, str) and self.native.value(key) is not None
+        except JointError:
+            return False
+
+    def __iter__(self) -> Iterator[str]:
+        raise TypeError("a Joint is read by key: joint['half_backlash_um']")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Joint.from_text, (self.text, self.source)
 
     def figures(self) -> dict[str, Any]:
         """Derived figures, as `joint check --json` writes them: masses, frequencies, lost motion, wind-up, limits."""
@@ -162,6 +192,29 @@ class Joint:
 
     def __repr__(self) -> str:
         return repr(self.native)
+
+
+JointLike = Union[str, "os.PathLike[str]", Mapping[str, Any], Joint]
+"""Preset, path of a joint file, dictionary with the keys of a joint file, or joint."""
+
+
+def as_joint(joint: JointLike) -> Joint:
+    """Joint of a preset, a path, a dictionary, or the joint itself."""
+    return joint if isinstance(joint, Joint) else Joint(joint)
+
+
+def shared(joints: Iterable[JointLike]) -> list[Joint]:
+    """Joints, one object for all of equal source and text, so that each is read and designed once."""
+    read: dict[str, Joint] = {}
+    known: dict[tuple[str, str], Joint] = {}
+    found = []
+    for it in joints:
+        if isinstance(it, str):
+            joint = read[it] if it in read else read.setdefault(it, Joint(it))
+        else:
+            joint = as_joint(it)
+        found.append(known.setdefault((joint.source, joint.text), joint))
+    return found
 
 
 def options(keywords: Mapping[str, Any]) -> list[str]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+import os
+from typing import Any, Mapping, NoReturn, Sequence
 
 import numpy as np
 
 from . import _native
-from ._columns import Columns, allocated, periods_of, spread, time_axis
-from ._joint import Joint
+from ._columns import Columns, allocated, checked_every, periods_of, spread, time_axis
+from ._joint import Joint, JointLike, shared
+from ._process import claim
 
 QUANTITIES = _native.PLANT_COLUMNS
 """Recorded quantities of a plant: names, and types of numpy."""
@@ -16,11 +18,11 @@ USUAL = ("motor_angle_rad", "link_angle_rad", "gap_m")
 """Quantities that many plants record by default."""
 
 
-def joints_of(joint: "Joint | str | Sequence[Joint | str]", n: int | None) -> tuple[list[_native.Joint], int]:
+def joints_of(joint: "JointLike | Sequence[JointLike]", n: int | None) -> tuple[list[_native.Joint], int]:
     """Compiled joints, and their number."""
-    if isinstance(joint, (Joint, str)):
+    if isinstance(joint, (Joint, str, os.PathLike, Mapping)):
         joint, n = [joint], 1 if n is None else n
-    joints = [it if isinstance(it, Joint) else Joint(it) for it in joint]
+    joints = shared(joint)
     if not joints or (n is not None and len(joints) not in (1, n)) or (n is not None and n < 1):
         raise ValueError(f"{n} joints are wanted and {len(joints)} are given")
     return [it.native for it in joints], len(joints) if n is None else n
@@ -41,8 +43,9 @@ class Plants:
 
     native: _native.Plants
 
-    def __init__(self, joint: "Joint | str | Sequence[Joint | str]", n: int | None = None, *, rate: int | None = None) -> None:
+    def __init__(self, joint: "JointLike | Sequence[JointLike]", n: int | None = None, *, rate: int | None = None) -> None:
         joints, count = joints_of(joint, n)
+        claim()
         self.native = _native.Plants(joints, count, rate)
 
     def __len__(self) -> int:
@@ -78,14 +81,18 @@ class Plants:
             Arrays of the shape (periods // every, n): row i is the state after period (i + 1) * every.
 
         Raises:
+            ValueError: with the name, if a number is not finite, or if an array does not fit or cannot be filled in place.
             KeyboardInterrupt: after Ctrl-C; the plants stand at the period that they had reached.
         """
-        periods, n = periods_of([torque, load], steps), len(self)
-        if every < 1:
-            raise ValueError("every must be 1 or more")
-        arrays = allocated(QUANTITIES, record if out is None else None, out, (periods // every, n))
-        self.native.step(spread(torque, np.float32, periods, n), spread(load, np.float32, periods, n), every, arrays)
+        claim()
+        periods, n, every = periods_of({"torque": torque, "load": load}, steps), len(self), checked_every(every)
+        inputs = [spread(name, it, np.float32, periods, n) for name, it in (("torque", torque), ("load", load))]
+        arrays = allocated(QUANTITIES, record if out is None else None, out, (periods // every, n), inputs)
+        self.native.step(*inputs, every, arrays)
         return Columns(dict(arrays), time_axis(periods, every, self.rate_Hz))
+
+    def __reduce_ex__(self, protocol: Any) -> NoReturn:
+        raise TypeError("a plant is not copied or pickled: make a new one of the same joint and step it by the same torques")
 
     def state(self, record: Sequence[str] | None = None) -> Columns:
         """Present state: arrays of the shape (n,); `record` names the quantities, None is all."""
@@ -117,7 +124,7 @@ class Plant(Plants):
         rate: control rate [Hz]; the joint file's if left out.
     """
 
-    def __init__(self, joint: Joint | str, *, rate: int | None = None) -> None:
+    def __init__(self, joint: JointLike, *, rate: int | None = None) -> None:
         super().__init__(joint, 1, rate=rate)
 
     def step(
@@ -135,8 +142,15 @@ class Plant(Plants):
         Returns:
             Arrays of the shape (periods // every,); all quantities unless `record` names some.
         """
-        columns = {name: values[:, np.newaxis] for name, values in out.items()} if out is not None else None
-        return flat(super().step(torque, load, steps=steps, every=every, record=record, out=columns))
+        return flat(super().step(torque, load, steps=steps, every=every, record=record, out=with_joints(out)))
+
+
+def with_joints(out: Mapping[str, "np.ndarray[Any, Any]"] | None) -> Mapping[str, "np.ndarray[Any, Any]"] | None:
+    """Arrays of one joint with an axis of joints."""
+    wrong = [name for name, values in (out or {}).items() if np.ndim(values) != 1]
+    if wrong:
+        raise ValueError(f"out[{wrong[0]!r}] must have the shape (rows,)")
+    return None if out is None else {name: values[:, np.newaxis] for name, values in out.items()}
 
 
 def flat(columns: Columns) -> Columns:

@@ -1,7 +1,7 @@
 //! CAN bus under equal identifiers, noise, bus-off and floods: the twin reports each cause, nothing hangs, and the drive
 //! goes to its safe state.
 
-use crate::bad_clients::count;
+use crate::bad_clients::{VOLTAGE, count};
 use crate::command::{joint, until};
 use crate::line::Line;
 use crate::twin::Twin;
@@ -10,8 +10,6 @@ use crate::twin::Twin;
 const MOTEUS_POSITION: &str = "can send 8001 1D01 BF\n";
 /// Velocity mode of moteus 1 at 0.2 turns/s; its default watchdog is 0.1 s.
 const MOTEUS_TURN: &str = "can send 8001 01000A0E200000C07FCDCC4C3E BF\n";
-/// Bus voltage of ODrive 1: request, and the beginning of the answer. No cyclic message has the identifier.
-const VOLTAGE: (&str, &str) = ("r0378\r", "t0378");
 
 #[test]
 fn equal_identifiers_collide_and_are_named() {

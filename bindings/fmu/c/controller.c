@@ -6,10 +6,6 @@
 
 #include <string.h>
 
-#define TURN_RAD 6.283185307179586
-/* Turns that a count in 32 bits holds. */
-#define MOST_TURNS 2147483647.0
-
 JointStatus model_start(Model *model) {
     JointStatus status = joint_observer_start(&model->objects.observer, sizeof model->objects.observer, tables, sizeof tables);
     memset(&model->objects.torque, 0, sizeof model->objects.torque);
@@ -19,10 +15,10 @@ JointStatus model_start(Model *model) {
     return status;
 }
 
-/* Whole turns and the rest; the rest of an angle beyond the whole turns of 32 bits is out of range, and is refused. */
+/* Splits an angle into whole turns and the rest. Inputs are limited to the turns that 32 bits hold. */
 static void set_turns(double angle_rad, int32_t *turns, float *fraction) {
     const double all = angle_rad / TURN_RAD;
-    *turns = all > -MOST_TURNS && all < MOST_TURNS ? (int32_t)all : 0;
+    *turns = (int32_t)all;
     *fraction = (float)(all - (double)*turns);
 }
 
@@ -55,9 +51,8 @@ static JointStatus command(Model *model) {
 JointStatus model_period(Model *model) {
     Objects *const own = &model->objects;
     const double *const values = model->values;
-    /* Periods since the communication step began: the present time is not yet the variable's. */
-    const double since = (double)model->periods - (values[VALUE_time] - model->start_s) * CONTROL_RATE_HZ;
-    const uint32_t grown = (uint32_t)(since + 0.5) * TICKS_PER_PERIOD;
+    /* Ticks since the communication step began, when the readings were taken. */
+    const uint32_t grown = (uint32_t)(model->periods - model->step_began) * TICKS_PER_PERIOD;
     JointSamples samples;
     JointStatus status;
     samples.time_ticks = (uint32_t)model->periods * TICKS_PER_PERIOD;
@@ -69,10 +64,6 @@ JointStatus model_period(Model *model) {
     samples.motor_torque_Nm = own->torque.motor_torque_Nm;
     status = joint_observer_step(&own->observer, &samples);
     return status == JOINT_STATUS_OK ? command(model) : status;
-}
-
-static double side(JointContact contact) {
-    return contact == JOINT_CONTACT_DRIVE_SIDE ? 1.0 : contact == JOINT_CONTACT_BACK_SIDE ? -1.0 : 0.0;
 }
 
 static double angle_of(const JointShaft *shaft) {
@@ -97,17 +88,17 @@ JointStatus model_outputs(Model *model) {
     values[VALUE_trust] = (double)torque->trust;
     values[VALUE_stage] = (double)torque->stage;
     values[VALUE_demand] = (double)torque->demand_Nm;
-    set_estimate(&values[VALUE_gap], &found.gap_m);
-    set_estimate(&values[VALUE_half_backlash], &found.half_backlash_m);
-    set_estimate(&values[VALUE_load_torque], &found.load_torque_Nm);
-    set_estimate(&values[VALUE_mesh_torque], &found.mesh_torque_Nm);
-    values[VALUE_gap_rate] = (double)found.gap_rate_m_per_s;
-    values[VALUE_contact] = side(found.contact);
-    values[VALUE_contact_valid] = (double)found.contact_valid;
-    values[VALUE_motor_angle] = angle_of(&found.motor);
-    values[VALUE_motor_speed] = (double)found.motor.speed_rad_per_s;
-    values[VALUE_link_angle] = angle_of(&found.link);
-    values[VALUE_link_speed] = (double)found.link.speed_rad_per_s;
+    set_estimate(&values[VALUE_estimated_gap], &found.gap_m);
+    set_estimate(&values[VALUE_estimated_half_backlash], &found.half_backlash_m);
+    set_estimate(&values[VALUE_estimated_load_torque], &found.load_torque_Nm);
+    set_estimate(&values[VALUE_estimated_mesh_torque], &found.mesh_torque_Nm);
+    values[VALUE_estimated_gap_rate] = (double)found.gap_rate_m_per_s;
+    values[VALUE_estimated_contact] = side_of(found.contact);
+    values[VALUE_estimated_contact_valid] = (double)found.contact_valid;
+    values[VALUE_estimated_motor_angle] = angle_of(&found.motor);
+    values[VALUE_estimated_motor_speed] = (double)found.motor.speed_rad_per_s;
+    values[VALUE_estimated_link_angle] = angle_of(&found.link);
+    values[VALUE_estimated_link_speed] = (double)found.link.speed_rad_per_s;
     values[VALUE_source] = (double)found.source;
     values[VALUE_motor_fault] = (double)found.motor_fault;
     values[VALUE_output_fault] = (double)found.output_fault;

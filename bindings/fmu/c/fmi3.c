@@ -8,16 +8,21 @@
 /* Stages in which inputs may be set; values may be read in all. */
 #define SETTING (INSTANTIATED | INITIALIZING | STEPPING)
 
-static void report(const Instance *instance, const char *message) {
+static void report(const Instance *instance, Outcome outcome, const char *message) {
     /* The pointer was stored on instantiation, as a pointer of another type of function. */
     const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->logger;
     if (logger != NULL) {
-        logger(instance->environment, fmi3Error, "logStatusError", message);
+        logger(instance->environment, outcome == DISCARDED ? fmi3Discard : fmi3Error,
+               outcome == DISCARDED ? "logStatusDiscard" : "logStatusError", message);
     }
 }
 
-static fmi3Status status_of(int succeeded) {
-    return succeeded ? fmi3OK : fmi3Error;
+/* Status of a call; an error terminates the instance, as FMI 3 demands. */
+static fmi3Status status_of(Instance *instance, Outcome outcome) {
+    if (outcome == FAILED) {
+        instance->model.stage = TERMINATED;
+    }
+    return outcome == SUCCEEDED ? fmi3OK : outcome == DISCARDED ? fmi3Discard : fmi3Error;
 }
 
 FMI3_EXPORT const char *fmi3GetVersion(void) {
@@ -25,14 +30,17 @@ FMI3_EXPORT const char *fmi3GetVersion(void) {
 }
 
 FMI3_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, const fmi3String categories[]) {
-    /* Errors are always reported; there is nothing else to report. */
-    return status_of(instance_at(c) != NULL);
+    Instance *const it = instance_at(c);
+    return it == NULL ? fmi3Error : status_of(it, instance_log(it, on, count, categories, "fmi3SetDebugLogging"));
 }
 
 static Instance callbacks_of(fmi3String name, fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
     Instance callbacks;
     memset(&callbacks, 0, sizeof callbacks);
     callbacks.report = report;
+    callbacks.refused = DISCARDED;
+    /* A failed instantiation is always explained. */
+    callbacks.logged = LOG_ALL;
     callbacks.name = (char *)(name == NULL ? "" : name);
     callbacks.logger = (void (*)(void))logger;
     callbacks.environment = environment;
@@ -45,19 +53,24 @@ FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String
                                                      fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
                                                      fmi3IntermediateUpdateCallback update) {
     const Instance callbacks = callbacks_of(name, environment, logger);
+    Instance *it;
     if (event_mode || intermediate_count > 0) {
-        (void)instance_refuse(&callbacks, "fmi3InstantiateCoSimulation: event mode and intermediate variables are not offered: "
+        (void)instance_refuse(&callbacks, FAILED, "fmi3InstantiateCoSimulation: event mode and intermediate variables are not offered: "
                               "instantiate without them");
         return NULL;
     }
-    return instance_new(&callbacks, name, token);
+    it = instance_new(&callbacks, name, token);
+    if (it != NULL) {
+        it->logged = logging ? LOG_ALL : 0;
+    }
+    return it;
 }
 
 FMI3_EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
                                                       fmi3Boolean logging, fmi3InstanceEnvironment environment,
                                                       fmi3LogMessageCallback logger) {
     const Instance callbacks = callbacks_of(name, environment, logger);
-    (void)instance_refuse(&callbacks, "fmi3InstantiateModelExchange: instantiate for co-simulation");
+    (void)instance_refuse(&callbacks, FAILED, "fmi3InstantiateModelExchange: instantiate for co-simulation");
     return NULL;
 }
 
@@ -67,7 +80,7 @@ FMI3_EXPORT fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3
                                                            fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
                                                            fmi3LockPreemptionCallback unlock) {
     const Instance callbacks = callbacks_of(name, environment, logger);
-    (void)instance_refuse(&callbacks, "fmi3InstantiateScheduledExecution: instantiate for co-simulation");
+    (void)instance_refuse(&callbacks, FAILED, "fmi3InstantiateScheduledExecution: instantiate for co-simulation");
     return NULL;
 }
 
@@ -78,37 +91,36 @@ FMI3_EXPORT void fmi3FreeInstance(fmi3Instance c) {
 FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
                                                    fmi3Float64 start, fmi3Boolean has_stop, fmi3Float64 stop) {
     Instance *const it = instance_at(c);
-    if (it == NULL || !instance_may(it, INSTANTIATED, "fmi3EnterInitializationMode")) {
+    Outcome outcome;
+    if (it == NULL) {
         return fmi3Error;
     }
-    if (!(start > -1e12 && start < 1e12)) {
-        return status_of(instance_refuse(it, "fmi3EnterInitializationMode: start time %g s: give a finite time", start));
-    }
-    it->model.start_s = start;
-    return status_of(instance_initialize(it, "fmi3EnterInitializationMode"));
-}
-
-/* Goes to a stage from others. */
-static fmi3Status advance(fmi3Instance c, unsigned from, unsigned to, const char *function) {
-    Instance *const it = instance_at(c);
-    if (it == NULL || !instance_may(it, from, function)) {
-        return fmi3Error;
-    }
-    it->model.stage = to;
-    return fmi3OK;
+    outcome = instance_set_times(it, start, has_stop, stop, "fmi3EnterInitializationMode");
+    return status_of(it, outcome == SUCCEEDED ? instance_initialize(it, "fmi3EnterInitializationMode") : outcome);
 }
 
 FMI3_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-    return advance(c, INITIALIZING, STEPPING, "fmi3ExitInitializationMode");
+    Instance *const it = instance_at(c);
+    return it == NULL ? fmi3Error : status_of(it, instance_advance(it, INITIALIZING, STEPPING, "fmi3ExitInitializationMode"));
 }
 
 FMI3_EXPORT fmi3Status fmi3Terminate(fmi3Instance c) {
-    return advance(c, STEPPING, TERMINATED, "fmi3Terminate");
+    Instance *const it = instance_at(c);
+    return it == NULL ? fmi3Error : status_of(it, instance_advance(it, STEPPING, TERMINATED, "fmi3Terminate"));
 }
 
 FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
     Instance *const it = instance_at(c);
-    return status_of(it != NULL && instance_reset(it));
+    return it == NULL ? fmi3Error : status_of(it, instance_reset(it));
+}
+
+static Outcome check_arrays(const Instance *it, const fmi3ValueReference references[], size_t count, const void *values,
+                            size_t value_count, const char *function) {
+    if (count != value_count) {
+        return instance_refuse(it, FAILED, "%s: %lu value references but %lu values: pass one value for every reference, as all "
+                               "variables are scalars", function, (unsigned long)count, (unsigned long)value_count);
+    }
+    return instance_has_arrays(it, references, values, count, function);
 }
 
 /* Defines the functions that read and set variables of one type; nothing is set unless all can be. */
@@ -117,9 +129,12 @@ FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
                                          fmi3##Type values[], size_t value_count) {                                         \
         Instance *const it = instance_at(c);                                                                                \
         size_t index;                                                                                                       \
-        if (it == NULL || !same_count(it, count, value_count, "fmi3Get" #Type) ||                                           \
-            !instance_readable(it, KIND, references, count, "fmi3Get" #Type)) {                                             \
+        if (it == NULL) {                                                                                                   \
             return fmi3Error;                                                                                               \
+        }                                                                                                                   \
+        if (check_arrays(it, references, count, values, value_count, "fmi3Get" #Type) != SUCCEEDED ||                       \
+            instance_readable(it, KIND, references, count, "fmi3Get" #Type) != SUCCEEDED) {                                 \
+            return status_of(it, FAILED);                                                                                   \
         }                                                                                                                   \
         for (index = 0; index < count; index++) {                                                                           \
             const double value = it->model.values[references[index]];                                                       \
@@ -131,13 +146,17 @@ FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
                                          const fmi3##Type values[], size_t value_count) {                                   \
         Instance *const it = instance_at(c);                                                                                \
         size_t index;                                                                                                       \
-        if (it == NULL || !instance_may(it, SETTING, "fmi3Set" #Type) ||                                                    \
-            !same_count(it, count, value_count, "fmi3Set" #Type)) {                                                         \
+        if (it == NULL) {                                                                                                   \
             return fmi3Error;                                                                                               \
         }                                                                                                                   \
+        if (instance_may(it, SETTING, "fmi3Set" #Type) != SUCCEEDED ||                                                      \
+            check_arrays(it, references, count, values, value_count, "fmi3Set" #Type) != SUCCEEDED) {                       \
+            return status_of(it, FAILED);                                                                                   \
+        }                                                                                                                   \
         for (index = 0; index < count; index++) {                                                                           \
-            if (!instance_settable(it, KIND, references[index], as_value, "fmi3Set" #Type)) {                               \
-                return fmi3Error;                                                                                           \
+            const Outcome outcome = instance_settable(it, KIND, references[index], as_value, "fmi3Set" #Type);              \
+            if (outcome != SUCCEEDED) {                                                                                     \
+                return status_of(it, outcome);                                                                              \
             }                                                                                                               \
         }                                                                                                                   \
         for (index = 0; index < count; index++) {                                                                           \
@@ -146,35 +165,29 @@ FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
         return fmi3OK;                                                                                                      \
     }
 
-static int same_count(const Instance *it, size_t references, size_t values, const char *function) {
-    return references == values ||
-           instance_refuse(it, "%s: %u value references but %u values: every variable here is a scalar", function,
-                           (unsigned)references, (unsigned)values);
-}
-
 ACCESS(Float64, REAL, values[index], value)
 ACCESS(Int32, INTEGER, (double)values[index], (fmi3Int32)value)
 ACCESS(Boolean, BOOLEAN, values[index] ? 1.0 : 0.0, value != 0.0)
 
 FMI3_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
     Instance *const it = instance_at(c);
-    return status_of(it != NULL && instance_save(it, state, "fmi3GetFMUState"));
+    return it == NULL ? fmi3Error : status_of(it, instance_save(it, state, "fmi3GetFMUState"));
 }
 
 FMI3_EXPORT fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
     Instance *const it = instance_at(c);
-    return status_of(it != NULL && instance_restore(it, state, "fmi3SetFMUState"));
+    return it == NULL ? fmi3Error : status_of(it, instance_restore(it, state, "fmi3SetFMUState"));
 }
 
 FMI3_EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
     Instance *const it = instance_at(c);
-    return status_of(it != NULL && instance_forget(it, state, "fmi3FreeFMUState"));
+    return it == NULL ? fmi3Error : status_of(it, instance_forget(it, state, "fmi3FreeFMUState"));
 }
 
 FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 step, fmi3Boolean no_restore, fmi3Boolean *event,
                                   fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last_time) {
     Instance *const it = instance_at(c);
-    const int succeeded = it != NULL && instance_step(it, from, step, "fmi3DoStep");
+    const Outcome outcome = it == NULL ? FAILED : instance_step(it, from, step, "fmi3DoStep");
     if (event != NULL) {
         *event = false;
     }
@@ -187,24 +200,25 @@ FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 
     if (it != NULL && last_time != NULL) {
         *last_time = it->model.values[VALUE_time];
     }
-    return status_of(succeeded);
+    return it == NULL ? fmi3Error : status_of(it, outcome);
 }
 
 /* Defines a function of the standard that this FMU does not offer. */
 #define NOT_OFFERED(name, why, ...)                                                                                         \
     FMI3_EXPORT fmi3Status name(fmi3Instance c, __VA_ARGS__) {                                                              \
         Instance *const it = instance_at(c);                                                                                \
-        return status_of(it != NULL && instance_refuse(it, #name ": " why));                                                \
+        return it == NULL ? fmi3Error : status_of(it, instance_refuse(it, FAILED, #name ": " why));                         \
     }
 #define NOT_OFFERED_ALONE(name, why)                                                                                        \
     FMI3_EXPORT fmi3Status name(fmi3Instance c) {                                                                           \
         Instance *const it = instance_at(c);                                                                                \
-        return status_of(it != NULL && instance_refuse(it, #name ": " why));                                                \
+        return it == NULL ? fmi3Error : status_of(it, instance_refuse(it, FAILED, #name ": " why));                         \
     }
+#define NO_TYPE "no variable is of this type: take types from modelDescription.xml"
 #define NO_VARIABLES(Type)                                                                                                  \
-    NOT_OFFERED(fmi3Get##Type, "there are no variables of this type", const fmi3ValueReference references[], size_t count,  \
+    NOT_OFFERED(fmi3Get##Type, NO_TYPE, const fmi3ValueReference references[], size_t count,  \
                 fmi3##Type values[], size_t value_count)                                                                    \
-    NOT_OFFERED(fmi3Set##Type, "there are no variables of this type", const fmi3ValueReference references[], size_t count,  \
+    NOT_OFFERED(fmi3Set##Type, NO_TYPE, const fmi3ValueReference references[], size_t count,  \
                 const fmi3##Type values[], size_t value_count)
 
 NO_VARIABLES(Float32)
@@ -217,11 +231,10 @@ NO_VARIABLES(Int64)
 NO_VARIABLES(UInt64)
 NO_VARIABLES(String)
 
-#define NO_TYPE "there are no variables of this type"
-#define NO_CLOCKS "there are no clocks"
+#define NO_CLOCKS "there are no clocks: call fmi3DoStep"
 #define NO_EVENTS "there are no events: call fmi3DoStep"
-#define NO_BYTES "a saved state belongs to its instance and is not turned into bytes"
-#define NO_DERIVATIVES "there are no derivatives: inputs are held over a communication step"
+#define NO_BYTES "a saved state stays in its instance: restore it with fmi3SetFMUState"
+#define NO_DERIVATIVES "there are no derivatives: inputs are held over a communication step; shorten the step"
 #define REFERENCES const fmi3ValueReference references[], size_t count
 
 NOT_OFFERED(fmi3GetBinary, NO_TYPE, REFERENCES, size_t sizes[], fmi3Binary values[], size_t value_count)
@@ -243,8 +256,8 @@ NOT_OFFERED_ALONE(fmi3EnterStepMode, NO_EVENTS)
 NOT_OFFERED_ALONE(fmi3EvaluateDiscreteStates, NO_EVENTS)
 NOT_OFFERED(fmi3UpdateDiscreteStates, NO_EVENTS, fmi3Boolean *again, fmi3Boolean *terminate, fmi3Boolean *nominals_changed,
             fmi3Boolean *values_changed, fmi3Boolean *has_next, fmi3Float64 *next)
-NOT_OFFERED_ALONE(fmi3EnterConfigurationMode, "there are no structural parameters")
-NOT_OFFERED_ALONE(fmi3ExitConfigurationMode, "there are no structural parameters")
+NOT_OFFERED_ALONE(fmi3EnterConfigurationMode, "there are no structural parameters: export the joint again")
+NOT_OFFERED_ALONE(fmi3ExitConfigurationMode, "there are no structural parameters: export the joint again")
 NOT_OFFERED(fmi3SerializedFMUStateSize, NO_BYTES, fmi3FMUState state, size_t *size)
 NOT_OFFERED(fmi3SerializeFMUState, NO_BYTES, fmi3FMUState state, fmi3Byte bytes[], size_t size)
 NOT_OFFERED(fmi3DeserializeFMUState, NO_BYTES, const fmi3Byte bytes[], size_t size, fmi3FMUState *state)

@@ -1,28 +1,21 @@
 /* Plant as an FMU: torques in; angles, gap, contacts, mesh forces and encoder readings out. */
 #include "instance.h"
 
-#define TURN_RAD 6.283185307179586
-
 JointStatus model_start(Model *model) {
     return joint_plant_start(&model->objects.plant, sizeof model->objects.plant, tables, sizeof tables);
 }
 
 JointStatus model_period(Model *model) {
     const double *const values = model->values;
-    return joint_plant_step(&model->objects.plant, (float)values[VALUE_motor_torque], (float)values[VALUE_load_torque]);
+    return joint_plant_step(&model->objects.plant, (float)values[VALUE_motor_torque], (float)values[VALUE_external_torque]);
 }
 
 /* Force of a mesh by its mean stiffness: zero within the backlash. */
 static double mesh_force(double deflection_m, double half_backlash_m, double stiffness_N_per_m) {
-    const double beyond = deflection_m > half_backlash_m    ? deflection_m - half_backlash_m
+    const double excess = deflection_m > half_backlash_m    ? deflection_m - half_backlash_m
                           : deflection_m < -half_backlash_m ? deflection_m + half_backlash_m
                                                             : 0.0;
-    return stiffness_N_per_m * beyond;
-}
-
-/* 1 for the drive side, -1 for the back side, 0 in the gap. */
-static double side(JointContact contact) {
-    return contact == JOINT_CONTACT_DRIVE_SIDE ? 1.0 : contact == JOINT_CONTACT_BACK_SIDE ? -1.0 : 0.0;
+    return stiffness_N_per_m * excess;
 }
 
 JointStatus model_outputs(Model *model) {
@@ -56,8 +49,8 @@ JointStatus model_outputs(Model *model) {
         const double sun_m = (double)motion.sun_deflections_m[planet], ring_m = (double)motion.ring_deflections_m[planet];
         values[VALUE_sun_force + planet] = mesh_force(sun_m, sun_half_backlash_m[planet], SUN_STIFFNESS_N_PER_M);
         values[VALUE_ring_force + planet] = mesh_force(ring_m, ring_half_backlash_m[planet], RING_STIFFNESS_N_PER_M);
-        values[VALUE_sun_contact + planet] = side(motion.sun_contacts[planet]);
-        values[VALUE_ring_contact + planet] = side(motion.ring_contacts[planet]);
+        values[VALUE_sun_contact + planet] = side_of(motion.sun_contacts[planet]);
+        values[VALUE_ring_contact + planet] = side_of(motion.ring_contacts[planet]);
     }
     return JOINT_STATUS_OK;
 }

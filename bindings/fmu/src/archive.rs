@@ -33,7 +33,10 @@ impl File {
 
 /// Bytes of the archive.
 pub fn pack(files: &[File]) -> Outcome<Vec<u8>> {
-    let too_large = |_| Failure::new("an archive holds at most 65,535 files and 4 GB");
+    let too_large = |_| {
+        Failure::new("an archive holds at most 65,535 files and 4 GB")
+            .with_help("remove files from the folders of the library's crates that do not belong there")
+    };
     let (mut out, mut central) = (vec![], vec![]);
     for file in files {
         let (offset, bytes) =

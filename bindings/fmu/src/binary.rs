@@ -24,9 +24,11 @@ pub fn platform(fmi: Fmi) -> &'static str {
 
 /// Compiles the sources. The names of temporary folders do not reach the result.
 pub fn build(model: &Model, sources: &[File], library: &Library) -> Outcome<Vec<u8>> {
-    let folder =
-        tempfile::tempdir().map_err(|error| Failure::new(format!("cannot create a folder for a build: {error}")))?;
-    let failure = |error: std::io::Error| Failure::new(format!("cannot write a part of the FMU: {error}"));
+    let failure = |error: std::io::Error| {
+        Failure::new(format!("cannot build the FMU in {}: {error}", std::env::temp_dir().display()))
+            .with_help("free space there, or set TMPDIR to a folder that can be written to")
+    };
+    let folder = tempfile::tempdir().map_err(failure)?;
     for file in sources {
         let path = folder.path().join(&file.name);
         path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failure)?;
@@ -46,5 +48,5 @@ pub fn build(model: &Model, sources: &[File], library: &Library) -> Outcome<Vec<
     ]);
     command.args(c_files(model)).args(["liblostmotion.a", "-o", "model.so"]);
     tool::capture_output(&mut command)?;
-    fs::read(folder.path().join("model.so")).map_err(|error| Failure::new(format!("the FMU's binary: {error}")))
+    fs::read(folder.path().join("model.so")).map_err(failure)
 }

@@ -1,5 +1,4 @@
-//! modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of FMI 3.0. Neither names a time, so that equal joints
-//! give equal files.
+//! modelDescription.xml of FMI 2.0 and 3.0. It names no time, so that equal joints give equal files.
 
 use crate::model::{Content, Fmi, Model};
 use crate::variables::{Kind, ONE, Role, Unit, Variable};
@@ -23,7 +22,7 @@ pub fn model_description(model: &Model, token: &str) -> String {
     let name = format!("{} {}", model.joint, model.content.name());
     let period = 1.0 / f64::from(model.rate);
     let head = format!(
-        "modelName=\"{}\" description=\"{}\" version=\"{}\" generationTool=\"{TOOL}\" license=\"MIT OR Apache-2.0\" \
+        "modelName=\"{}\" description=\"{}\" version=\"{}\" generationTool=\"{TOOL}\" \
          variableNamingConvention=\"structured\"",
         escaped(&name),
         escaped(&description),
@@ -31,7 +30,10 @@ pub fn model_description(model: &Model, token: &str) -> String {
     );
     let units = units(model);
     let experiment = format!("<DefaultExperiment startTime=\"0\" stopTime=\"1\" stepSize=\"{period:?}\"/>");
-    let categories = "<LogCategories><Category name=\"logStatusError\" description=\"Refused calls\"/></LogCategories>";
+    let categories = "<LogCategories>\n\
+        <Category name=\"logStatusError\" description=\"Calls that failed\"/>\n\
+        <Category name=\"logStatusDiscard\" description=\"Calls that were refused and changed nothing\"/>\n\
+        </LogCategories>";
     let identifier = &model.identifier;
     let variables: String =
         model.variables.iter().enumerate().map(|(index, it)| variable(model.fmi, index, it)).collect();
@@ -127,19 +129,4 @@ fn variable(fmi: Fmi, index: usize, of: &Variable) -> String {
             format!("<{element} {shared}{unit}{start}/>\n")
         }
     }
-}
-
-/// buildDescription.xml of FMI 3.0: the C sources need the library that CMakeLists.txt builds from `rust`.
-pub fn build_description(model: &Model, c_files: &[String]) -> String {
-    let sources: String = c_files.iter().map(|name| format!("<SourceFile name=\"{name}\"/>\n")).collect();
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n\
-         <BuildConfiguration modelIdentifier=\"{}\" description=\"CMakeLists.txt builds it whole\">\n\
-         <SourceFileSet language=\"C99\" compilerOptions=\"-ffp-contract=off\">\n{sources}\
-         <IncludeDirectory name=\"include\"/>\n</SourceFileSet>\n\
-         <Library name=\"lostmotion\" version=\"{}\" external=\"true\" description=\"Built by cargo from the folder rust\"/>\n\
-         </BuildConfiguration>\n</fmiBuildDescription>\n",
-        model.identifier,
-        env!("CARGO_PKG_VERSION")
-    )
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use board::device::board::Board;
 use c_library::library::{self, Target};
 use joint_file::{named, warnings};
-use report::failure::{Failure, Outcome};
+use report::failure::Outcome;
 use report::progress::Progress;
 use report::workspace::workspace;
 use report::{folder, write};
@@ -71,28 +71,35 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     ))
 }
 
+/// Folder of the CMake project in the archive. FMI 3 demands a buildDescription.xml in `sources`, by which importers compile C
+/// files alone; the core is Rust.
+const PROJECT: &str = "extra/lostmotion";
+
+/// Scope of the license, before its text.
+const LICENSE_SCOPE: &str = "This license applies to the software in this archive. It does not apply to the parameters of the \
+                             joint, which belong to the author of the joint file.\n\n";
+
 /// Files of an FMU in the order of the archive.
 pub fn contents(model: &Model, library: &library::Library) -> Outcome<Vec<File>> {
     let mut c_sources = sources::c_sources(model)?;
-    // The token stands for everything that it does not stand in, the variables included.
-    let variables = File::text("description.h", sources::description(model, ""));
-    let token = model.token(&[&c_sources[..], &[variables]].concat());
+    let mut others = vec![File::text("CMakeLists.txt", sources::cmake(model))];
+    others.extend(sources::rust_sources()?);
+    // The token stands for everything that it does not stand in.
+    let without_token = [
+        File::text("description.h", sources::description(model, "")),
+        File::text("modelDescription.xml", description::model_description(model, "")),
+    ];
+    let token = model.token(&[&c_sources[..], &others, &without_token].concat());
     c_sources.push(File::text("description.h", sources::description(model, &token)));
     let binary = binary::build(model, &c_sources, library)?;
     let license = workspace().join("LICENSE");
-    let license = std::fs::read(&license).map_err(|error| Failure::new(format!("{}: {error}", license.display())))?;
+    let license = std::fs::read_to_string(&license).map_err(|error| sources::unreadable(&license, &error))?;
     let mut files = vec![
         File::text("modelDescription.xml", description::model_description(model, &token)),
         File { name: format!("binaries/{}/{}.so", binary::platform(model.fmi), model.identifier), bytes: binary },
-        File { name: "documentation/licenses/license.txt".to_owned(), bytes: license },
+        File::text("documentation/licenses/license.txt", format!("{LICENSE_SCOPE}{license}")),
     ];
-    if model.fmi == Fmi::Three {
-        let text = description::build_description(model, &sources::c_files(model));
-        files.push(File::text("sources/buildDescription.xml", text));
-    }
-    files.push(File::text("sources/CMakeLists.txt", sources::cmake(model)));
-    let inside = |file: File| File { name: format!("sources/{}", file.name), ..file };
-    files.extend(c_sources.into_iter().map(inside));
-    files.extend(sources::rust_sources()?.into_iter().map(inside));
+    let inside = |file: File| File { name: format!("{PROJECT}/{}", file.name), ..file };
+    files.extend(c_sources.into_iter().chain(others).map(inside));
     Ok(files)
 }

@@ -79,8 +79,20 @@ pub struct Model {
 impl Model {
     /// Designs the tables of a joint for a part of it.
     pub fn new(fmi: Fmi, content: Content, joint: &JointFile, board: &board::device::board::Board) -> Outcome<Self> {
-        let tables = tables::make(joint, joint, tables::DEFAULT_REQUEST, content == Content::Plant, board)?;
-        let invalid = |error| Failure::new(format!("invalid tables: {error:?}"));
+        let make = |plant| tables::make(joint, joint, tables::DEFAULT_REQUEST, plant, board);
+        let tables = make(content == Content::Plant).map_err(|failure| {
+            // The remedies of `joint tables` are not accepted by `joint export`.
+            failure.with_help(match content == Content::Plant && make(false).is_ok() {
+                true => "`--model controller` exports observer and compensation without the plant",
+                false => {
+                    "`joint check` shows the limits that follow from the file; change the control rate with `--rate`"
+                }
+            })
+        })?;
+        let invalid = |error| {
+            Failure::new(format!("invalid tables: {error:?}"))
+                .with_help("this is a bug of `joint export`: report it with the joint file")
+        };
         let blob = table_blob::Blob::open(&tables.words).map_err(invalid)?;
         let header = blob.header();
         let lead = blob.compensation().map_err(invalid)?.crossing.lead;
@@ -107,11 +119,15 @@ impl Model {
         })
     }
 
-    /// Token by which description and binary are known to belong together: a digest of files.
+    /// Token by which description and binary are known to belong together: a digest of files. Lengths come first, so that
+    /// no byte passes from a name to a content, or from one file to the next, unnoticed.
     pub fn token(&self, files: &[File]) -> String {
-        let bytes =
-            |file: &File| file.name.bytes().chain(file.bytes.iter().copied()).map(u64::from).collect::<Vec<_>>();
-        let digest = |start| files.iter().flat_map(bytes).fold(start, chain);
+        let words = |file: &File| {
+            let lengths = [file.name.len() as u64, file.bytes.len() as u64];
+            let bytes = file.name.bytes().chain(file.bytes.iter().copied()).map(u64::from);
+            lengths.into_iter().chain(bytes).collect::<Vec<_>>()
+        };
+        let digest = |start| files.iter().flat_map(words).fold(start, chain);
         let [high, low]: [u64; 2] = [digest(START), digest(!START)];
         let hex = format!("{high:016x}{low:016x}");
         format!("{{{}-{}-{}-{}-{}}}", &hex[..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..])

@@ -54,8 +54,14 @@ pub fn c_sources(model: &Model) -> Outcome<Vec<File>> {
 }
 
 fn read(name: &str, path: &Path) -> Outcome<File> {
-    let bytes = fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
+    let bytes = fs::read(path).map_err(|error| unreadable(path, &error))?;
     Ok(File { name: name.to_owned(), bytes })
+}
+
+/// Failure of a source of this project.
+pub fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::new(format!("{}: {error}", path.display()))
+        .with_help("restore this file of the project, or clone it again")
 }
 
 /// Name of a variable in C: without the index of a planet; `None` for all planets but the first.
@@ -101,7 +107,8 @@ pub fn description(model: &Model, token: &str) -> String {
         out.push('\n');
     }
     out += "typedef enum { REAL, INTEGER, BOOLEAN } Kind;\n\ntypedef struct {\n    const char *name;\n    const char *unit;\n    \
-            Kind kind;\n    int is_input;\n    double start;\n} Variable;\n\nenum {\n";
+            Kind kind;\n    int is_input;\n    double start;\n    \
+            /* Numbers that an input accepts. */\n    double min;\n    double max;\n} Variable;\n\nenum {\n";
     for (index, variable) in model.variables.iter().enumerate() {
         if let Some(name) = c_name(&variable.name) {
             let _ = writeln!(out, "    VALUE_{name} = {index},");
@@ -122,7 +129,13 @@ pub fn description(model: &Model, token: &str) -> String {
             Role::Input(start) => (1, start),
             Role::Independent | Role::Output => (0, 0.0),
         };
-        let _ = writeln!(out, "    {{\"{}\", \"{unit}\", {kind}, {is_input}, {start:?}}},", variable.name);
+        let range = variable.range();
+        let (min, max) = (range.start(), range.end());
+        let _ = writeln!(
+            out,
+            "    {{\"{}\", \"{unit}\", {kind}, {is_input}, {start:?}, {min:e}, {max:e}}},",
+            variable.name
+        );
     }
     out += "};\n\n#endif\n";
     out
@@ -134,7 +147,7 @@ pub fn cmake(model: &Model) -> String {
 }
 
 const CMAKE: &str = "# Builds the binary of this FMU for the machine on which it runs; needs a C compiler and cargo:
-#   cmake -S sources -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build
+#   cmake -S extra/lostmotion -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build
 # The result, build/@MODEL@ with the system's ending, belongs into the FMU's folder `binaries`.
 cmake_minimum_required(VERSION 3.13)
 project(@MODEL@ C)
@@ -181,12 +194,12 @@ pub fn rust_sources() -> Outcome<Vec<File>> {
 }
 
 fn text(path: &Path) -> Outcome<String> {
-    fs::read_to_string(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))
+    fs::read_to_string(path).map_err(|error| unreadable(path, &error))
 }
 
 /// Adds all files of a folder in the order of their names.
 fn add_folder(root: &Path, folder: &str, files: &mut Vec<File>) -> Outcome<()> {
-    let failure = |error: std::io::Error| Failure::new(format!("{folder}: {error}"));
+    let failure = |error: std::io::Error| unreadable(&root.join(folder), &error);
     let mut names = fs::read_dir(root.join(folder))
         .map_err(failure)?
         .map(|entry| entry.map(|entry| entry.file_name().to_string_lossy().into_owned()))

@@ -1,6 +1,9 @@
 //! Variables of an FMU: names, units, descriptions. A value reference is a variable's place in the list; the C sources get
 //! the list as `description.h`, the importer as modelDescription.xml.
 
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -54,6 +57,22 @@ pub struct Variable {
     pub description: String,
 }
 
+/// Turns of a set-point on either side of zero: the core counts whole turns in 32 bits.
+const MAX_TURNS: f64 = 2_147_483_647.0;
+
+impl Variable {
+    /// Numbers that an input accepts; the core computes in 32 bits.
+    pub fn range(&self) -> RangeInclusive<f64> {
+        let largest = f64::from(f32::MAX);
+        match self.kind {
+            Kind::Real(RAD) => -MAX_TURNS * TAU..=MAX_TURNS * TAU,
+            Kind::Real(_) => -largest..=largest,
+            Kind::Integer => 0.0..=f64::from(i32::MAX),
+            Kind::Boolean => 0.0..=1.0,
+        }
+    }
+}
+
 fn variable(name: impl Into<String>, kind: Kind, role: Role, description: impl Into<String>) -> Variable {
     Variable { name: name.into(), kind, role, description: description.into() }
 }
@@ -73,7 +92,7 @@ pub fn of_plant(planets: usize) -> Vec<Variable> {
     let mut all = vec![
         time(),
         input("motor_torque", NM, "Torque command to the motor, at its shaft; rounded to 32 bits"),
-        input("load_torque", NM, "Torque that brakes the link from outside; rounded to 32 bits"),
+        input("external_torque", NM, "Torque that brakes the link from outside; rounded to 32 bits"),
         output("motor_angle", RAD, "Angle of the motor's shaft, all turns"),
         output("link_angle", RAD, "Angle of the link, all turns"),
         output("carrier_speed", RAD_PER_S, "Speed of the carrier's rigid-body motion"),
@@ -81,12 +100,12 @@ pub fn of_plant(planets: usize) -> Vec<Variable> {
         output("wind_up", M, "Wind-up between carrier and link along the line of action"),
         output("air_gap_torque", NM, "Torque in the motor's air gap, mean of the last control period"),
         output("drive_torque", NM, "Torque on the sun, friction and cogging included, in the last control period"),
-        output("braking_torque", NM, "Torque that brakes the link: friction, weight, load_torque"),
+        output("braking_torque", NM, "Torque that brakes the link: friction, weight, external_torque"),
         count("motor_counts", "Reading of the motor encoder"),
-        count("motor_age", "Age of this reading, in ticks of the encoders' clock"),
-        variable("output_valid", Kind::Boolean, Role::Output, "Whether the output encoder has a reading"),
+        count("motor_age", "Age of the reading motor_counts, in ticks of the encoders' clock"),
+        variable("output_valid", Kind::Boolean, Role::Output, "True if the output encoder has a reading"),
         count("output_counts", "Reading of the output encoder"),
-        count("output_age", "Age of this reading, in ticks of the encoders' clock"),
+        count("output_age", "Age of the reading output_counts, in ticks of the encoders' clock"),
     ];
     for (name, mesh) in [("sun", "sun and planet"), ("ring", "planet and ring")] {
         let force = |planet| {
@@ -115,10 +134,10 @@ pub fn of_controller(lead: f32) -> Vec<Variable> {
     let mut all = vec![
         time(),
         count("motor_counts", "Reading of the motor encoder at the begin of the communication step"),
-        count("motor_age", "Age of this reading, in ticks of the encoders' clock"),
-        flag("output_valid", 1.0, "Whether the output encoder has a reading"),
+        count("motor_age", "Age of the reading motor_counts, in ticks of the encoders' clock"),
+        flag("output_valid", 1.0, "True if the output encoder has a reading"),
         count("output_counts", "Reading of the output encoder at the begin of the communication step"),
-        count("output_age", "Age of this reading, in ticks of the encoders' clock"),
+        count("output_age", "Age of the reading output_counts, in ticks of the encoders' clock"),
         input(
             "target_angle",
             RAD,
@@ -129,7 +148,7 @@ pub fn of_controller(lead: f32) -> Vec<Variable> {
         input("ahead_angle", RAD, &ahead("target_angle")),
         input("ahead_speed", RAD_PER_S, &ahead("target_speed")),
         input("ahead_acceleration", RAD_PER_S2, &ahead("target_acceleration")),
-        flag("ahead_valid", 0.0, "Whether the motion ahead is known"),
+        flag("ahead_valid", 0.0, "True if the motion ahead is known"),
         flag(
             "impedance",
             0.0,
@@ -144,24 +163,24 @@ pub fn of_controller(lead: f32) -> Vec<Variable> {
         output("demand", NM, "Torque that the teeth must transmit after a crossing that began now"),
     ];
     for (name, unit, square, text) in [
-        ("gap", M, M2, "Gap coordinate along the line of action"),
-        ("half_backlash", M, M2, "Half-backlash of each mesh"),
-        ("load_torque", NM, N2M2, "Torque that brakes the link"),
-        ("mesh_torque", NM, N2M2, "Torque that the meshes transmit, at the carrier"),
+        ("estimated_gap", M, M2, "Gap coordinate along the line of action"),
+        ("estimated_half_backlash", M, M2, "Half-backlash of each mesh"),
+        ("estimated_load_torque", NM, N2M2, "Torque that brakes the link"),
+        ("estimated_mesh_torque", NM, N2M2, "Torque that the meshes transmit, at the carrier"),
     ] {
         all.push(variable(name, Kind::Real(unit), Role::Output, format!("{text}, estimated")));
         all.push(variable(format!("{name}_variance"), Kind::Real(square), Role::Output, format!("Variance of {name}")));
-        let valid = format!("Whether {name} may be used");
+        let valid = format!("True if {name} may be used");
         all.push(variable(format!("{name}_valid"), Kind::Boolean, Role::Output, valid));
     }
     all.extend([
-        output("gap_rate", M_PER_S, "Rate of the gap coordinate, estimated"),
-        code("contact", &format!("Estimated flank that carries: {SIDES} or unknown")),
-        variable("contact_valid", Kind::Boolean, Role::Output, "Whether contact may be used"),
-        output("motor_angle", RAD, "Angle of the motor's shaft, all turns since the start, estimated"),
-        output("motor_speed", RAD_PER_S, "Speed of the motor's shaft, estimated"),
-        output("link_angle", RAD, "Angle of the link, all turns since the start, estimated"),
-        output("link_speed", RAD_PER_S, "Speed of the link, estimated"),
+        output("estimated_gap_rate", M_PER_S, "Rate of the gap coordinate, estimated"),
+        code("estimated_contact", &format!("Flank that carries, estimated: {SIDES} or unknown")),
+        variable("estimated_contact_valid", Kind::Boolean, Role::Output, "True if estimated_contact may be used"),
+        output("estimated_motor_angle", RAD, "Angle of the motor's shaft, all turns since the start, estimated"),
+        output("estimated_motor_speed", RAD_PER_S, "Speed of the motor's shaft, estimated"),
+        output("estimated_link_angle", RAD, "Angle of the link, all turns since the start, estimated"),
+        output("estimated_link_speed", RAD_PER_S, "Speed of the link, estimated"),
         code("source", "Encoders in use: 0 none, 1 motor, 2 both"),
         code("motor_fault", "Reason for which the motor encoder is not used: JointFault of joint.h; 0 none"),
         code("output_fault", "Reason for which the output encoder is not used: JointFault of joint.h; 0 none"),

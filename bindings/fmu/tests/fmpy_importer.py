@@ -1,4 +1,4 @@
-"""FMPy imports the units of a joint: arguments are the version, the plant's and the controller's file. Prints the digest of
+"""FMPy imports the FMUs of a joint: arguments are the version, the plant's and the controller's file. Prints the digest of
 the plant's run of master.c, which the test compares with the core's."""
 import shutil
 import struct
@@ -20,7 +20,7 @@ def chain(running, number):
 
 
 class Unit:
-    """An unpacked unit, and its instances."""
+    """An unpacked FMU, and its instances."""
 
     def __init__(self, version, path):
         self.version, self.description, self.folder = version, read_model_description(path), extract(path)
@@ -59,7 +59,7 @@ class Unit:
         digest = 0x6A6F696E742D3031
         for period in range(begin, end):
             self.set(instance, "motor_torque", (period * 37 % 101 - 50) * 0.02)
-            self.set(instance, "load_torque", (period // 7 * 37 % 101 - 50) * 0.02)
+            self.set(instance, "external_torque", (period // 7 * 37 % 101 - 50) * 0.02)
             self.step(instance, period)
             for value in self.values(instance):
                 digest = chain(digest, value)
@@ -80,7 +80,7 @@ def main(version, plant_file, controller_file):
     # As users call it: torque in, motion out, three control periods a step.
     times = numpy.arange(200) * 3 * unit.period
     torque = numpy.array(list(zip(times, numpy.full(200, 0.5))), dtype=[("time", float), ("motor_torque", float)])
-    result = simulate_fmu(plant_file, stop_time=0.05, step_size=3 * unit.period, output_interval=3 * unit.period, input=torque)
+    result = simulate_fmu(plant_file, stop_time=0.06, step_size=3 * unit.period, output_interval=3 * unit.period, input=torque)
     assert result["link_angle"][-1] > 0.0 and numpy.isfinite(result["gap"]).all(), result[-1]
     simulate_fmu(controller_file, stop_time=10 * unit.period, step_size=unit.period, output_interval=unit.period)
 

@@ -1,4 +1,4 @@
-//! Units of a joint: structure of the archive, and their bits against the core's, by a master written in C.
+//! FMUs of a joint: structure of the archive, and their bits against the core's, by a master written in C.
 
 use std::fs;
 use std::path::Path;
@@ -73,6 +73,7 @@ fn value<'a>(attributes: &'a [(String, String)], name: &str) -> &'a str {
 #[test]
 fn archive_holds_what_its_description_names() {
     let q1 = joint("q1");
+    let folder = tempfile::tempdir().expect("a folder");
     for (fmi, version) in [(Fmi::Two, "2.0"), (Fmi::Three, "3.0")] {
         for content in [Content::Plant, Content::Controller] {
             let model = model(fmi, content, &q1);
@@ -82,7 +83,10 @@ fn archive_holds_what_its_description_names() {
             let root = &elements(xml, "fmiModelDescription")[0];
             assert_eq!(value(root, "fmiVersion"), version);
             let token = value(root, if fmi == Fmi::Two { "guid" } else { "instantiationToken" });
-            assert!(text(&files, "sources/description.h").contains(token), "binary and description have one token");
+            assert!(
+                text(&files, "extra/lostmotion/description.h").contains(token),
+                "binary and description have one token"
+            );
             let unit = &elements(xml, "CoSimulation")[0];
             let name = format!("/{}.so", value(unit, "modelIdentifier"));
             assert_eq!(
@@ -100,31 +104,122 @@ fn archive_holds_what_its_description_names() {
             for real in ["Real", "Float64"].iter().flat_map(|name| elements(xml, name)) {
                 assert!(units.iter().any(|unit| unit == value(&real, "unit")), "{real:?}");
             }
-            if fmi == Fmi::Three {
-                let build = text(&files, "sources/buildDescription.xml");
-                for source in elements(build, "SourceFile") {
-                    text(&files, &format!("sources/{}", value(&source, "name")));
-                }
+            assert_structure(fmi, xml, &model);
+            for name in ["rust/Cargo.toml", "rust/bindings/c/src/lib.rs", "CMakeLists.txt"] {
+                text(&files, &format!("extra/lostmotion/{name}"));
             }
-            for name in ["sources/rust/Cargo.toml", "sources/rust/bindings/c/src/lib.rs", "sources/CMakeLists.txt"] {
-                text(&files, name);
-            }
+            assert!(
+                !files.iter().any(|file| file.name.starts_with("sources/")),
+                "no sources that C compilers build alone"
+            );
+            assert_eq!(value(root, "license"), "", "the license is the software's, not the joint's");
+            assert!(
+                text(&files, "documentation/licenses/license.txt").starts_with("This license applies to the software")
+            );
             let archive = archive::pack(&files).expect("an archive");
             assert!(archive.starts_with(b"PK\x03\x04") && archive.len() < 4_000_000, "{} B", archive.len());
+            let path = folder.path().join("joint.fmu");
+            fs::write(&path, archive).expect("room");
+            succeeded(Command::new("python3").args(["-m", "zipfile", "-t"]).arg(&path));
+            let listed = succeeded(Command::new("python3").args(["-m", "zipfile", "-l"]).arg(&path));
+            // A heading, then a line a file.
+            assert_eq!(listed.lines().count(), files.len() + 1, "{listed}");
         }
     }
 }
 
-/// Two joints, rates or parts never share a token.
+/// The model structure names the outputs in their order: by index from 1 in FMI 2, by value reference in FMI 3.
+fn assert_structure(fmi: Fmi, xml: &str, model: &Model) {
+    let (names, key, first) = match fmi {
+        Fmi::Two => (["Unknown"].as_slice(), "index", 1),
+        Fmi::Three => (["Output", "InitialUnknown"].as_slice(), "valueReference", 0),
+    };
+    let named: Vec<String> =
+        names.iter().flat_map(|name| elements(xml, name)).map(|element| value(&element, key).to_owned()).collect();
+    let outputs = || model.variables.iter().enumerate().filter(|(_, it)| it.role == Role::Output);
+    let once: Vec<String> = outputs().map(|(index, _)| (index + first).to_string()).collect();
+    assert_eq!(named, [once.clone(), once].concat());
+}
+
+/// Variables of equal name are connected from one FMU to the other: a name means one quantity in each direction.
 #[test]
-fn other_joint_gets_other_token() {
-    let [q1, mut other] = [joint("q1"), joint("q1")];
+fn names_occur_once_per_direction() {
+    let q1 = joint("q1");
+    let all: Vec<_> = [Content::Plant, Content::Controller]
+        .into_iter()
+        .flat_map(|content| model(Fmi::Two, content, &q1).variables)
+        .collect();
+    for role in ["input", "output"] {
+        let mut names: Vec<&str> = all
+            .iter()
+            .filter(|it| if role == "input" { matches!(it.role, Role::Input(_)) } else { it.role == Role::Output })
+            .map(|it| it.name.as_str())
+            .collect();
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count, "{role}");
+    }
+    assert!(!all.iter().any(|it| it.name == "load_torque"), "two quantities: external_torque, estimated_load_torque");
+}
+
+/// A joint that cannot be exported gets a remedy that `joint export` accepts.
+#[test]
+fn impossible_design_names_accepted_remedy() {
+    let mut slow = joint("q1");
+    slow.surroundings.control_rate = 20;
+    // Too slow for the plant, and not for observer and compensation.
+    let mut coarse = joint("q1");
+    coarse.surroundings.control_rate = 2000;
+    for (joint, content, remedy) in [
+        (&slow, Content::Plant, "--rate"),
+        (&slow, Content::Controller, "--rate"),
+        (&coarse, Content::Plant, "--model controller"),
+    ] {
+        let failure = Model::new(Fmi::Two, content, joint, &Board::emulated()).expect_err("no design");
+        let help = failure.help().expect("a remedy");
+        assert!(help.contains(remedy), "{failure}");
+        assert!(!help.contains("--without-plant") && !help.contains("--bandwidth"), "{failure}");
+    }
+}
+
+/// Token in a description.
+fn token(model: &Model) -> String {
+    let files = contents(model, &LIBRARY).expect("an FMU");
+    let root = &elements(text(&files, "modelDescription.xml"), "fmiModelDescription")[0];
+    value(root, if model.fmi == Fmi::Two { "guid" } else { "instantiationToken" }).to_owned()
+}
+
+/// Joints, rates, parts, versions and descriptions that differ never share a token.
+#[test]
+fn other_contents_get_other_token() {
+    let [q1, mut other, mut faster] = [joint("q1"), joint("q1"), joint("q1")];
     other.parameters.sun_planet.half_backlash[0] *= 1.5;
-    let tokens = [&q1, &other].map(|joint| {
-        let files = contents(&model(Fmi::Two, Content::Plant, joint), &LIBRARY).expect("an FMU");
-        value(&elements(text(&files, "modelDescription.xml"), "fmiModelDescription")[0], "guid").to_owned()
-    });
-    assert_ne!(tokens[0], tokens[1]);
+    faster.surroundings.control_rate = 20_000;
+    let mut described = model(Fmi::Two, Content::Plant, &q1);
+    described.variables[1].description += ".";
+    let mut tokens = [
+        model(Fmi::Two, Content::Plant, &q1),
+        model(Fmi::Two, Content::Plant, &other),
+        model(Fmi::Two, Content::Plant, &faster),
+        model(Fmi::Two, Content::Controller, &q1),
+        model(Fmi::Three, Content::Plant, &q1),
+        described,
+    ]
+    .map(|model| token(&model))
+    .to_vec();
+    tokens.sort_unstable();
+    tokens.dedup();
+    assert_eq!(tokens.len(), 6, "{tokens:?}");
+}
+
+/// A byte that moves from a name to a content, or to the next file, changes the token.
+#[test]
+fn moved_byte_changes_token() {
+    let model = model(Fmi::Two, Content::Controller, &joint("q1"));
+    let tokens = [[("ab", "c"), ("d", "")], [("a", "bc"), ("d", "")], [("ab", ""), ("c", "d")]]
+        .map(|files| model.token(&files.map(|(name, bytes)| File::text(name, bytes))));
+    assert!(tokens[0] != tokens[1] && tokens[1] != tokens[2] && tokens[0] != tokens[2], "{tokens:?}");
 }
 
 /// References of the variables for the master, as a header.
@@ -240,7 +335,68 @@ fn loop_digest<const N: usize>(gears: &Tables<f32, N>, around: &SurroundingsTabl
     })
 }
 
-/// The master's output for a joint: digests of the units.
+/// Periods of the step that begins with a period, in the uneven loop.
+fn many(period: i32) -> i32 {
+    if period % 12 == 9 { 3 } else { 1 }
+}
+
+/// Digest of a closed loop whose every tenth step has three periods, with readings of some age, motion ahead and a torque at the link.
+fn uneven_loop_digest<const N: usize>(
+    gears: &Tables<f32, N>,
+    around: &SurroundingsTable<f32>,
+    blob: &Blob<'_>,
+    ticks: u32,
+) -> u64 {
+    let mut joint = VirtualJoint::new(gears, around);
+    let mut observer = Observer::<f32, MAPPED>::new(blob.observer().expect("a table"));
+    let mut compensation = Compensation::new(blob.compensation().expect("a table"));
+    let (mut command, mut moved) = (0.0_f32, 0);
+    let begins = std::iter::successors(Some(0_i32), |period| Some(period + many(*period)));
+    let digest = begins.take_while(|period| *period < 6000).fold(START, |digest, period| {
+        let place = period % 1000;
+        let angle = 0.3 * f64::from(if place < 500 { place } else { 1000 - place }) / 500.0;
+        let position = |angle: f64| {
+            let turns = angle / TURN;
+            Position { turns: turns as i32, fraction: (turns - f64::from(turns as i32)) as f32 }
+        };
+        let demand = if period / 3000 % 2 == 0 {
+            let ahead = Motion { position: position(angle + 0.01), speed: 0.5, acceleration: 2.0 };
+            Demand::Position {
+                now: Motion { position: position(angle), speed: 0.25, acceleration: 1.0 },
+                ahead: (period / 1500 % 2 != 0).then_some(ahead),
+            }
+        } else {
+            Demand::Impedance(ImpedancePoint {
+                position: position(angle),
+                speed: 0.25,
+                torque: 0.5,
+                stiffness: 100.0,
+                damping: 3.0,
+            })
+        };
+        let began = joint.samples();
+        let mut gap = 0.0;
+        for later in 0..many(period) as u32 {
+            let mut samples = began;
+            samples.time = began.time.wrapping_add(later * ticks);
+            samples.motor.time = began.time.wrapping_sub(period as u32 % 300);
+            samples.output.as_mut().expect("a reading").time = began.time.wrapping_sub(period as u32 % 200 * 2);
+            samples.torque = command;
+            let estimates = *observer.step(&samples);
+            command = compensation.step(&estimates, &demand).torque;
+            gap = estimates.gap.value;
+        }
+        moved += i32::from(command != 0.0);
+        (0..many(period)).for_each(|_| joint.advance(command, (0.1 * torque(period / 7)) as f32));
+        let motion = joint.outputs();
+        let carrier = (f64::from(motion.carrier_turns) + f64::from(motion.carrier_fraction) / 4_294_967_296.0) * TURN;
+        add(digest, &[command.into(), gap.into(), carrier + f64::from(motion.link_offset)])
+    });
+    assert!(moved >= 20, "torque in {moved} of 5000 steps");
+    digest
+}
+
+/// The master's output for a joint: digests of the FMUs.
 fn master(fmi: Fmi, joint: &joint_file::JointFile) -> (Vec<String>, Model) {
     let folder = tempfile::tempdir().expect("a folder");
     let [plant, controller] = [Content::Plant, Content::Controller].map(|content| model(fmi, content, joint));
@@ -271,7 +427,7 @@ fn master(fmi: Fmi, joint: &joint_file::JointFile) -> (Vec<String>, Model) {
 /// Wrong calls are refused with their reason, a saved state is repeated, a thousand instances do not disturb one another, and
 /// plant and closed loop have the core's bits, for each kind of gear.
 #[test]
-fn units_match_core_bitwise() {
+fn fmus_match_core_bitwise() {
     for (name, fmi) in [("q1", Fmi::Two), ("q1", Fmi::Three), ("s1", Fmi::Two), ("d2", Fmi::Three)] {
         let file = joint(name);
         let (lines, plant) = master(fmi, &file);
@@ -283,7 +439,8 @@ fn units_match_core_bitwise() {
             Gears::Four(gears) => all_digests(gears, around, &file, &plant, &blob),
             Gears::Five(gears) => all_digests(gears, around, &file, &plant, &blob),
         };
-        let found: Vec<_> = ["single ", "tens ", "loop "].map(|word| programs::value_after(&lines, word)).into();
+        let found: Vec<_> =
+            ["single ", "tens ", "loop ", "uneven "].map(|word| programs::value_after(&lines, word)).into();
         assert_eq!(found, digests.map(|digest| Some(format!("{digest:016x}"))), "{name}: {lines:?}");
     }
 }
@@ -294,11 +451,12 @@ fn all_digests<const N: usize>(
     file: &joint_file::JointFile,
     plant: &Model,
     blob: &Blob<'_>,
-) -> [u64; 3] {
+) -> [u64; 4] {
     [
         plant_digest(gears, around, file, plant.ratio, 1),
         plant_digest(gears, around, file, plant.ratio, 10),
         loop_digest(gears, around, blob),
+        uneven_loop_digest(gears, around, blob, plant.ticks),
     ]
 }
 

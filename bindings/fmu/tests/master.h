@@ -28,7 +28,8 @@ typedef bool Truth;
 #define COUNTS , size_t
 #endif
 
-enum { DONE = 0, REFUSED = 3 };
+/* Statuses; FMI 2 has no discarded steps and values here. */
+enum { DONE = 0, DISCARD = 2, REFUSED = 3, BAD_VALUE = FMI == 2 ? REFUSED : DISCARD };
 
 typedef struct {
     void *library;
@@ -41,6 +42,7 @@ typedef struct {
     int (*set_boolean)(void *, const uint32_t *, size_t, const Truth *COUNTS);
     int (*initialized)(void *), (*terminate)(void *), (*reset)(void *);
     int (*save)(void *, void **), (*restore)(void *, void *), (*forget)(void *, void **);
+    int (*log)(void *, Truth, size_t, const char *const *);
     void (*free)(void *);
 } Unit;
 
@@ -74,36 +76,40 @@ static Unit load(const char *path, const char *token) {
     fetch(unit.library, PREFIX "Get" STATE, &unit.save);
     fetch(unit.library, PREFIX "Set" STATE, &unit.restore);
     fetch(unit.library, PREFIX "Free" STATE, &unit.forget);
+    fetch(unit.library, PREFIX "SetDebugLogging", &unit.log);
     fetch(unit.library, PREFIX "FreeInstance", &unit.free);
     return unit;
 }
 
-/* The last message of a unit. */
-static char message[512];
+/* The last message of an FMU, its status and category. */
+static char message[512], told_category[32];
+static int told_status;
 
 #if FMI == 2
 static void logged(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
                    fmi2String format, ...) {
     __builtin_va_list arguments;
-    (void)environment, (void)name, (void)status, (void)category;
+    (void)environment, (void)name;
+    told_status = status;
+    (void)snprintf(told_category, sizeof told_category, "%s", category);
     __builtin_va_start(arguments, format);
     (void)vsnprintf(message, sizeof message, format, arguments);
     __builtin_va_end(arguments);
 }
 
-static void *instantiate(const Unit *unit, const char *token) {
+static void *instantiate_with(const Unit *unit, const char *token, int logging) {
     static const fmi2CallbackFunctions callbacks = {logged, calloc, free, NULL, NULL};
     void *(*function)(const char *, int, const char *, const char *, const void *, int, int);
     fetch(unit->library, "fmi2Instantiate", &function);
-    return function("joint", fmi2CoSimulation, token, "", &callbacks, 0, 0);
+    return function("joint", fmi2CoSimulation, token, "", &callbacks, 0, logging);
 }
 
-static int initialize(const Unit *unit, void *instance, double start) {
+static int initialize_until(const Unit *unit, void *instance, double start, int has_stop, double stop) {
     int (*setup)(void *, int, double, double, int, double), (*enter)(void *);
     fetch(unit->library, "fmi2SetupExperiment", &setup);
     fetch(unit->library, "fmi2EnterInitializationMode", &enter);
     {
-        const int first = setup(instance, 0, 0.0, start, 0, 0.0), second = enter(instance);
+        const int first = setup(instance, 0, 0.0, start, has_stop, stop), second = enter(instance);
         return first > second ? first : second;
     }
 }
@@ -119,21 +125,23 @@ static int step(const Unit *unit, void *instance, double from, double size) {
 }
 #else
 static void logged(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String text) {
-    (void)environment, (void)status, (void)category;
+    (void)environment;
+    told_status = status;
+    (void)snprintf(told_category, sizeof told_category, "%s", category);
     (void)snprintf(message, sizeof message, "%s", text);
 }
 
-static void *instantiate(const Unit *unit, const char *token) {
+static void *instantiate_with(const Unit *unit, const char *token, int logging) {
     void *(*function)(const char *, const char *, const char *, bool, bool, bool, bool, const void *, size_t, void *,
                       fmi3LogMessageCallback, void *);
     fetch(unit->library, "fmi3InstantiateCoSimulation", &function);
-    return function("joint", token, "", false, false, false, false, NULL, 0, NULL, logged, NULL);
+    return function("joint", token, "", false, logging != 0, false, false, NULL, 0, NULL, logged, NULL);
 }
 
-static int initialize(const Unit *unit, void *instance, double start) {
+static int initialize_until(const Unit *unit, void *instance, double start, int has_stop, double stop) {
     int (*enter)(void *, bool, double, double, bool, double);
     fetch(unit->library, "fmi3EnterInitializationMode", &enter);
-    return enter(instance, false, 0.0, start, false, 0.0);
+    return enter(instance, false, 0.0, start, has_stop != 0, stop);
 }
 
 static int step(const Unit *unit, void *instance, double from, double size) {
@@ -149,6 +157,14 @@ static int step(const Unit *unit, void *instance, double from, double size) {
 }
 #endif
 
+static void *instantiate(const Unit *unit, const char *token) {
+    return instantiate_with(unit, token, 1);
+}
+
+static int initialize(const Unit *unit, void *instance, double start) {
+    return initialize_until(unit, instance, start, 0, 0.0);
+}
+
 static int set_real(const Unit *unit, void *instance, uint32_t reference, double value) {
     return unit->set_real(instance, &reference, 1, &value COUNT(1));
 }
@@ -162,7 +178,7 @@ static int set_boolean(const Unit *unit, void *instance, uint32_t reference, int
     return unit->set_boolean(instance, &reference, 1, &truth COUNT(1));
 }
 
-/* Value of a variable of any type; ends the program if the unit refuses. */
+/* Value of a variable of any type; ends the program if the FMU refuses. */
 static double value_of(const Unit *unit, void *instance, uint32_t reference, char kind) {
     double real = 0.0;
     int integer = 0, status;

@@ -19,7 +19,7 @@
  * three such roundings of a communication point stay below TOLERANCE.
  */
 #define MAX_START 1e14
-/* Longest communication step [periods]: the count of ticks in 32 bits wraps later only if a period has one tick. */
+/* Longest communication step [periods]: within the 32 bits in which controller.c counts the periods of a step. */
 #define MAX_PERIODS 4e9
 
 static const char *stage_name(unsigned stage) {

@@ -10,7 +10,8 @@ use crate::columns::{self, BLOCK, Column, PERIODS_PER_CHECK, Recorder, block_of,
 use crate::controllers::{self, BorrowedSetPoints, ControllerOfJoint, Controllers, Output, SetPoints};
 use crate::plants::{self, PlantOfJoint, PlantState, Plants};
 
-/// A period of both takes 8 times that of a plant alone: 2.0 us, measured as for [`PERIODS_PER_CHECK`].
+/// Joint-periods between two looks at Python's signals. A closed-loop period takes 8 times as long as a plant's: 2.0 us,
+/// measured as for [`PERIODS_PER_CHECK`].
 const PERIODS_PER_CHECK_OF_BOTH: usize = PERIODS_PER_CHECK / 8;
 
 /// Recorders of a block: those of the plants, those of the controllers.
@@ -49,21 +50,14 @@ pub fn run<'py>(
     let of_plants = columns::by_block(&mut of_plants, blocks);
     let mut recorders: Vec<Recorders<'_>> =
         of_plants.into_iter().zip(columns::by_block(&mut of_controllers, blocks)).collect();
-    let band = (PERIODS_PER_CHECK_OF_BOTH / count.max(1)).max(1);
-    for begin in (0..shape[0]).step_by(band) {
-        let end = (begin + band).min(shape[0]);
-        let (plants, controllers, recorders) = (&mut *plants, &mut *controllers, &mut recorders);
-        py.detach(|| {
-            let joints = plants.par_chunks_mut(BLOCK).zip(controllers.par_chunks_mut(BLOCK));
-            joints.zip(recorders.par_iter_mut()).enumerate().for_each(|(block, ((plants, controllers), recorders))| {
-                let load = block_of(&load, block, plants.len());
-                let inputs = (set_points.block(block, plants.len()), load);
-                run_block(plants, controllers, &inputs, preview, [begin, end, every], recorders);
-            });
+    columns::in_bands(py, shape[0], count, PERIODS_PER_CHECK_OF_BOTH, |[begin, end]| {
+        let joints = plants.par_chunks_mut(BLOCK).zip(controllers.par_chunks_mut(BLOCK));
+        joints.zip(recorders.par_iter_mut()).enumerate().for_each(|(block, ((plants, controllers), recorders))| {
+            let load = block_of(&load, block, plants.len());
+            let inputs = (set_points.block(block, plants.len()), load);
+            run_block(plants, controllers, &inputs, preview, [begin, end, every], recorders);
         });
-        py.check_signals()?;
-    }
-    Ok(())
+    })
 }
 
 fn run_block(

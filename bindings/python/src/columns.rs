@@ -62,6 +62,23 @@ pub fn block_of<'a, T>(array: &'a ArrayView2<'_, T>, block: usize, joints: usize
     array.slice_axis(Axis(1), Slice::from(block * BLOCK..block * BLOCK + joints))
 }
 
+/// Runs all periods in bands, each without Python's lock, and looks at Python's signals after each band. `run` receives
+/// the first period of a band and the one after its last; `checked` is the number of joint-periods in a band.
+pub fn in_bands(
+    py: Python<'_>,
+    periods: usize,
+    joints: usize,
+    checked: usize,
+    mut run: impl FnMut([usize; 2]) + Send,
+) -> PyResult<()> {
+    let band = (checked / joints.max(1)).max(1);
+    for begin in (0..periods).step_by(band) {
+        py.detach(|| run([begin, (begin + band).min(periods)]));
+        py.check_signals()?;
+    }
+    Ok(())
+}
+
 /// Refuses an array of another shape.
 pub fn check_shape(name: &str, given: &[usize], shape: [usize; 2]) -> PyResult<()> {
     if given == shape {

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use board::device::board::Board;
+use board::device::image::DEFAULT_TICK_RATE;
 use clap::Parser;
 use joint_file::named;
 use log_reader::column_map::{self, ColumnMap};
@@ -20,9 +21,6 @@ use scenario::{TestGroup, TestRequest};
 use simulation::check::summary;
 
 use crate::work;
-
-/// Rate of the check of a joint file, as in `joint check` [Hz].
-const CHECK_RATE: u32 = 20_000;
 
 /// Arguments of one command by themselves.
 #[derive(Debug, Parser)]
@@ -83,7 +81,7 @@ pub fn joint_from_data_sheet(py: Python<'_>, arguments: Vec<OsString>) -> PyResu
 pub fn check(py: Python<'_>, name: String, text: String) -> PyResult<String> {
     work::short(py, || {
         let loaded = named::read_changed(name, text, &[])?;
-        output::json("figures", &summary(&loaded, &Board::emulated(), CHECK_RATE, None)?)
+        output::json("figures", &summary(&loaded, &Board::emulated(), DEFAULT_TICK_RATE, None)?)
     })
 }
 

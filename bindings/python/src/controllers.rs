@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use model_core::compensation::{Command, Compensation, ControlOutput, ImpedancePoint, Motion, Position, Stage};
 use model_core::controller::design::ControlRequest;
-use model_core::gears::Flank;
+use model_core::gears::contact_state;
 use model_core::observer::{Estimates, MAPPED, Observer, Reading, Samples, Source};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
@@ -18,7 +18,7 @@ use self_cell::self_cell;
 use table_blob::{Blob, BlobError};
 
 use crate::columns::{self, BLOCK, Column, PERIODS_PER_CHECK, Quantity, Recorder, Value, block_of, check_shape};
-use crate::failure::{exception, result};
+use crate::failure::exception;
 use crate::joint::Joint;
 use crate::tables::{self, Request, Tables};
 
@@ -81,7 +81,7 @@ pub const QUANTITIES: &[Quantity<Output>] = &[
     Quantity { name: "trust", kind: "float32", value: |it| Value::Single(it.control.trust) },
     Quantity { name: "demand_N_m", kind: "float32", value: |it| Value::Single(it.control.demand) },
     Quantity { name: "stage", kind: "uint8", value: |it| Value::Code(stage_code(it.control.stage)) },
-    Quantity { name: "flank", kind: "uint8", value: |it| Value::Code(flank_code(it.control.flank)) },
+    Quantity { name: "flank", kind: "uint8", value: |it| Value::Code(contact_state(it.control.flank).code()) },
     Quantity { name: "short_of_torque", kind: "uint8", value: |it| Value::Code(it.control.short_of_torque.into()) },
     Quantity { name: "stepped_back", kind: "uint8", value: |it| Value::Code(it.control.stepped_back.into()) },
     value!("gap_m", gap),
@@ -135,15 +135,6 @@ fn stage_code(stage: Stage) -> u8 {
         Stage::Plain => 3,
         Stage::Off => 4,
         Stage::Reversed => 5,
-    }
-}
-
-/// Codes of contacts: 0 separated, 1 drive side, 2 back side.
-fn flank_code(flank: Option<Flank>) -> u8 {
-    match flank {
-        None => 0,
-        Some(Flank::Drive) => 1,
-        Some(Flank::Back) => 2,
     }
 }
 
@@ -291,7 +282,7 @@ impl Output {
 }
 
 /// Observers or controllers of `n` joints.
-#[pyclass(module = "lostmotion._native", subclass)]
+#[pyclass(module = "lostmotion._native")]
 pub struct Controllers {
     /// Controllers in their order.
     pub controllers: Vec<ControllerOfJoint>,
@@ -303,8 +294,7 @@ pub struct Controllers {
 
 impl Controllers {
     fn fresh(py: Python<'_>, tables: &[Tables], has_compensation: bool) -> PyResult<Vec<ControllerOfJoint>> {
-        let made: Result<Vec<_>, _> = tables.iter().map(|it| ControllerOfJoint::new(it, has_compensation)).collect();
-        result(py, made.map_err(tables::unusable))
+        tables::each(py, tables, |it| ControllerOfJoint::new(it, has_compensation))
     }
 
     fn at(&self, index: usize) -> PyResult<&ControllerOfJoint> {
@@ -330,9 +320,9 @@ impl Controllers {
         output_encoder: bool,
         compensation: bool,
     ) -> PyResult<Self> {
-        let rate = rate.unwrap_or_else(|| joints[0].0.file.surroundings.control_rate);
+        let rate = tables::rate_of(&joints, rate);
         let control = ControlRequest { bandwidth, output_encoder, ..ControlRequest::USUAL };
-        let tables = tables::design(py, &joints, n, Request { rate: Some(rate), control, plant: false })?;
+        let tables = tables::design(py, &joints, n, Request { rate, control, plant: false })?;
         let controllers = Self::fresh(py, &tables, compensation)?;
         Ok(Self { controllers, tables, has_compensation: compensation, rate })
     }
@@ -402,24 +392,18 @@ impl Controllers {
         let missing = missing.as_ref().map(|it| it.as_array());
         let mut columns = Column::of(QUANTITIES, record, [shape[0] / every, count])?;
         let mut recorders = columns::by_block(&mut columns, count.div_ceil(BLOCK));
-        let band = (PERIODS_PER_CHECK / count.max(1)).max(1);
-        for begin in (0..shape[0]).step_by(band) {
-            let end = (begin + band).min(shape[0]);
-            let (controllers, recorders) = (&mut self.controllers, &mut recorders);
-            py.detach(|| {
-                let blocks = controllers.par_chunks_mut(BLOCK).zip(recorders.par_iter_mut()).enumerate();
-                blocks.for_each(|(block, (controllers, recorders))| {
-                    let joints = controllers.len();
-                    let output = output.as_ref().map(|it| block_of(it, block, joints));
-                    let missing = missing.as_ref().map(|it| block_of(it, block, joints));
-                    let samples = (block_of(&motor, block, joints), output, missing, block_of(&torque, block, joints));
-                    let set_points = set_points.block(block, controllers.len());
-                    step_block(controllers, &samples, &set_points, preview, [begin, end, every], recorders);
-                });
+        let controllers = &mut self.controllers;
+        columns::in_bands(py, shape[0], count, PERIODS_PER_CHECK, |[begin, end]| {
+            let blocks = controllers.par_chunks_mut(BLOCK).zip(recorders.par_iter_mut()).enumerate();
+            blocks.for_each(|(block, (controllers, recorders))| {
+                let joints = controllers.len();
+                let output = output.as_ref().map(|it| block_of(it, block, joints));
+                let missing = missing.as_ref().map(|it| block_of(it, block, joints));
+                let samples = (block_of(&motor, block, joints), output, missing, block_of(&torque, block, joints));
+                let set_points = set_points.block(block, joints);
+                step_block(controllers, &samples, &set_points, preview, [begin, end, every], recorders);
             });
-            py.check_signals()?;
-        }
-        Ok(())
+        })
     }
 }
 

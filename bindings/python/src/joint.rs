@@ -11,7 +11,7 @@ use crate::failure::result;
 use crate::work;
 
 /// Joint of a joint file.
-#[pyclass(frozen, module = "lostmotion._native", subclass)]
+#[pyclass(frozen, module = "lostmotion._native")]
 pub struct Joint(pub Loaded);
 
 /// Refusal of a key.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use c_plant::{Motion, Plant};
 use model_core::controller::design::ControlRequest;
 use model_core::observer::Samples;
-use numpy::ndarray::{ArrayView2, Axis, Slice};
+use numpy::ndarray::ArrayView2;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -14,8 +14,7 @@ use rayon::prelude::*;
 use self_cell::self_cell;
 use table_blob::{Blob, BlobError};
 
-use crate::columns::{self, BLOCK, Column, PERIODS_PER_CHECK, Quantity, Recorder, Value, check_shape};
-use crate::failure::result;
+use crate::columns::{self, BLOCK, Column, PERIODS_PER_CHECK, Quantity, Recorder, Value, block_of, check_shape};
 use crate::joint::Joint;
 use crate::tables::{self, Request, Tables};
 
@@ -109,7 +108,7 @@ impl PlantOfJoint {
 }
 
 /// Plants of `n` joints.
-#[pyclass(module = "lostmotion._native", subclass)]
+#[pyclass(module = "lostmotion._native")]
 pub struct Plants {
     /// Plants in their order.
     pub plants: Vec<PlantOfJoint>,
@@ -122,11 +121,9 @@ impl Plants {
     /// Designs plants of one joint for all, or of a joint each.
     #[new]
     fn new(py: Python<'_>, joints: Vec<PyRef<'_, Joint>>, n: usize, rate: Option<u32>) -> PyResult<Self> {
-        let rate = rate.unwrap_or_else(|| joints[0].0.file.surroundings.control_rate);
-        let request = Request { rate: Some(rate), control: ControlRequest::USUAL, plant: true };
-        let tables = tables::design(py, &joints, n, request)?;
-        let plants: Result<Vec<_>, _> = tables.iter().map(PlantOfJoint::new).collect();
-        Ok(Self { plants: result(py, plants.map_err(tables::unusable))?, tables, rate })
+        let rate = tables::rate_of(&joints, rate);
+        let tables = tables::design(py, &joints, n, Request { rate, control: ControlRequest::USUAL, plant: true })?;
+        Ok(Self { plants: tables::each(py, &tables, PlantOfJoint::new)?, tables, rate })
     }
 
     /// Number of plants.
@@ -142,8 +139,7 @@ impl Plants {
 
     /// Returns every plant to rest at angle zero.
     fn reset(&mut self, py: Python<'_>) -> PyResult<()> {
-        let plants: Result<Vec<_>, _> = self.tables.iter().map(PlantOfJoint::new).collect();
-        self.plants = result(py, plants.map_err(tables::unusable))?;
+        self.plants = tables::each(py, &self.tables, PlantOfJoint::new)?;
         Ok(())
     }
 
@@ -188,41 +184,30 @@ impl Plants {
         let (torque, load) = (torque.as_array(), load.as_array());
         let mut columns = Column::of(QUANTITIES, record, [shape[0] / every, count])?;
         let mut recorders = columns::by_block(&mut columns, count.div_ceil(BLOCK));
-        let periods = shape[0];
-        let band = (PERIODS_PER_CHECK / count.max(1)).max(1);
-        for begin in (0..periods).step_by(band) {
-            let end = (begin + band).min(periods);
-            let plants = &mut self.plants;
-            let recorders = &mut recorders;
-            py.detach(|| {
-                let inputs = torque.axis_chunks_iter(Axis(1), BLOCK).zip(load.axis_chunks_iter(Axis(1), BLOCK));
-                let blocks: Vec<_> = plants.chunks_mut(BLOCK).zip(inputs).zip(recorders.iter_mut()).collect();
-                blocks.into_par_iter().for_each(|((plants, (torque, load)), recorders)| {
-                    let [torque, load] = [torque, load].map(|it| it.slice_axis_move(Axis(0), Slice::from(begin..end)));
-                    step_block(plants, [torque, load], begin, every, recorders);
-                });
+        let plants = &mut self.plants;
+        columns::in_bands(py, shape[0], count, PERIODS_PER_CHECK, |[begin, end]| {
+            let blocks = plants.par_chunks_mut(BLOCK).zip(recorders.par_iter_mut()).enumerate();
+            blocks.for_each(|(block, (plants, recorders))| {
+                let inputs = [&torque, &load].map(|it| block_of(it, block, plants.len()));
+                step_block(plants, &inputs, [begin, end, every], recorders);
             });
-            py.check_signals()?;
-        }
-        Ok(())
+        })
     }
 }
 
 /// Steps the plants of a block, one after the other, so that each stays in the cache.
 fn step_block(
     plants: &mut [PlantOfJoint],
-    [torque, load]: [ArrayView2<'_, f32>; 2],
-    begin: usize,
-    every: usize,
+    [torque, load]: &[ArrayView2<'_, f32>; 2],
+    [begin, end, every]: [usize; 3],
     recorders: &mut [Recorder<'_, PlantState>],
 ) {
     for (joint, plant) in plants.iter_mut().enumerate() {
-        let inputs = torque.column(joint).into_iter().zip(load.column(joint));
-        for (period, (torque, load)) in (begin..).zip(inputs) {
-            plant.advance(*torque, *load);
-            if (period + 1).is_multiple_of(every) && !recorders.is_empty() {
-                let (state, row) = (plant.state(), period / every);
-                recorders.iter_mut().for_each(|recorder| recorder.write(row, joint, &state));
+        for row in begin..end {
+            plant.advance(torque[[row, joint]], load[[row, joint]]);
+            if (row + 1).is_multiple_of(every) && !recorders.is_empty() {
+                let state = plant.state();
+                recorders.iter_mut().for_each(|recorder| recorder.write(row / every, joint, &state));
             }
         }
     }

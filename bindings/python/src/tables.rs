@@ -12,14 +12,15 @@ use rayon::prelude::*;
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, BlobError};
 
+use crate::failure::result;
 use crate::joint::Joint;
 use crate::work;
 
 /// Requirements on the tables.
 #[derive(Debug, Clone, Copy)]
 pub struct Request {
-    /// Control rate in place of the joint file's [Hz].
-    pub rate: Option<u32>,
+    /// Control rate [Hz].
+    pub rate: u32,
     /// Requirements on the controller.
     pub control: ControlRequest,
     /// True for tables with a plant.
@@ -35,8 +36,19 @@ pub struct Tables {
     pub ratio: f64,
 }
 
+/// Control rate: the given one, or that of the first joint file [Hz].
+pub fn rate_of(joints: &[PyRef<'_, Joint>], rate: Option<u32>) -> u32 {
+    rate.unwrap_or_else(|| joints[0].0.file.surroundings.control_rate)
+}
+
+/// Objects on the tables of each joint.
+pub fn each<T>(py: Python<'_>, tables: &[Tables], make: impl Fn(&Tables) -> Result<T, BlobError>) -> PyResult<Vec<T>> {
+    let made: Result<Vec<T>, BlobError> = tables.iter().map(make).collect();
+    result(py, made.map_err(unusable))
+}
+
 /// Failure of tables that do not open; they were made here.
-pub fn unusable(error: BlobError) -> Failure {
+fn unusable(error: BlobError) -> Failure {
     Failure::new(format!("the tables cannot be used: {error:?}"))
 }
 
@@ -65,7 +77,7 @@ const HELP_OF_CONTROLLER: &str =
 
 fn tables_of(loaded: &joint_file::named::Loaded, request: Request) -> Outcome<Tables> {
     let mut joint = loaded.file.clone();
-    joint.surroundings.control_rate = request.rate.unwrap_or(joint.surroundings.control_rate);
+    joint.surroundings.control_rate = request.rate;
     let made = make(&joint, &joint, request.control, request.plant, &Board::emulated()).map_err(|failure| {
         let help = if request.plant { HELP_OF_PLANT } else { HELP_OF_CONTROLLER };
         failure.with_help(help).while_doing(format_args!("tables of {}", loaded.name))

@@ -52,7 +52,8 @@ def identify(
         joint: joint that gives teeth, levers and inertias; q1 if left out.
         changes: values of the joint to be changed first, by key.
         keywords: further options of the command, with underscores: `quasi_static=True` (without `joint` and `changes`),
-            `gear_ratio=6`, `output_locked=True`, `map="moteus"`, `map_joint="knee"` for a map of several joints, `column=["motor_counts=pos_raw"]`, `unit=["motor_angle=turns"]`.
+            `gear_ratio=6`, `output_locked=True`, `map="moteus"`, `map_joint="knee"` for a map of several joints,
+            `column=["motor_counts=pos_raw"]`, `unit=["motor_angle=turns"]`.
 
     Raises:
         JointError: if the log determines nothing; says which rows and what to record.

@@ -167,7 +167,7 @@ class Controllers:
             torque: torques commanded in the periods before [N m], of the same shape.
             set_point: `Motion` or `Impedance`; angle zero is held if left out.
             preview: True reads each joint's motion ahead by its `lead_s`. In the last `lead_s` of the array the motion
-                ahead is unknown: for one motion in several calls, pass True only with rows enough for one call.
+                ahead is unknown: a motion that is passed in several calls is not read ahead from one call into the next.
             every: periods per recorded row.
             record: names of the recorded quantities; None records all.
             out: arrays of the shape (periods // every, n) to be filled in place, by name.

@@ -52,8 +52,8 @@ class Joint:
     """Joint with its drive train, encoders and load.
 
     Args:
-        source: name of a preset (`PRESETS`), path of a joint file, a `Joint`, or a dictionary with the keys of a joint file, each
-            with its unit in the name: `{"name": ..., "mesh": {"half_backlash_um": 40, ...}, ...}`.
+        source: name of a preset (`PRESETS`), path of a joint file, a `Joint`, or a dictionary with the keys of a joint
+            file, each with its unit in the name: `{"name": ..., "mesh": {"half_backlash_um": 40, ...}, ...}`.
         changes: values to be changed, by key: `{"half_backlash_um": 60}`.
 
     Raises:
@@ -62,9 +62,7 @@ class Joint:
 
     native: _native.Joint
 
-    def __init__(
-        self, source: "JointLike" = "q1", changes: Mapping[str, Any] | None = None
-    ) -> None:
+    def __init__(self, source: "JointLike" = "q1", changes: Mapping[str, Any] | None = None) -> None:
         if isinstance(source, Joint):
             self.native = source.native if not changes else source.changed(changes).native
         elif isinstance(source, Mapping):

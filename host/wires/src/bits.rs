@@ -204,7 +204,8 @@ mod tests {
         let key = |frame: Option<Frame>| priority(&frame.unwrap());
         let data = key(Frame::classic(standard(0x10), &[]));
         assert!(key(Frame::classic(standard(0x0F), &[])) < data);
-        assert!(data < key(Frame::remote(standard(0x10), 0)));
+        let remote = key(Frame::remote(standard(0x10), 0));
+        assert!(data < remote && remote < key(Frame::classic(extended(0x10 << 18), &[])));
         // The same first 11 bits: a frame with 11 bits wins over one with 29.
         assert!(data < key(Frame::classic(extended(0x10 << 18), &[])));
         assert!(key(Frame::classic(extended(0x10 << 18), &[])) < key(Frame::classic(standard(0x11), &[])));

@@ -1,7 +1,7 @@
 //! Wire that all nodes share: one frame at a time, chosen by arbitration; errors destroy frames for all nodes.
 //!
-//! Once the bus is idle, the waiting frame with the lowest key wins (see `wires::bits::priority`). Two nodes that send the same
-//! identifier both go on, up to the first bit in which their frames differ:
+//! Once the bus is idle, the waiting frame with the lowest key wins (see `wires::bits::priority`). Two nodes that send the
+//! same identifier both go on, up to the first bit in which their frames differ:
 //!
 //! - The node whose recessive bit is hidden has an error. If it is error active, its flag destroys the frame: both
 //!   senders count an error of the transmitter, all others one of the receiver, and both frames are sent again.
@@ -186,10 +186,8 @@ impl Medium {
         let senders: Vec<usize> =
             (0..self.nodes.len()).filter(|index| contenders(&self.nodes[*index]) == Some(key)).collect();
         let (mut alive, mut stopped) = (senders.clone(), Vec::new());
-        let bits_of = |index: usize| Some((index, Bits::new(self.nodes[index].front()?.0)));
-        // Most frames have one sender and need no bits here.
-        let contested = if senders.len() > 1 { senders.as_slice() } else { &[] };
-        let frames: Vec<(usize, Bits)> = contested.iter().filter_map(|index| bits_of(*index)).collect();
+        let frames: Vec<(usize, Bits)> =
+            senders.iter().filter_map(|index| Some((*index, Bits::new(self.nodes[*index].front()?.0)))).collect();
         let bits = |index: usize| frames.iter().find(|(sender, _)| *sender == index).map(|(_, bits)| bits);
         let mut destroyed_at = None;
         while let Some(difference) = first_difference(&alive, bits) {
@@ -205,16 +203,16 @@ impl Medium {
         if senders.len() > 1 && (destroyed_at.is_some() || !stopped.is_empty()) {
             self.note_collision(&senders);
         }
-        let duration = self.duration(alive.first().copied());
+        let Duration { nominal, data } =
+            alive.first().and_then(|index| bits(*index)).map(Bits::duration).unwrap_or_default();
         let is_noisy = alive.iter().any(|index| self.random.uniform() < self.nodes[*index].noise);
         if destroyed_at.is_none() && is_noisy {
-            destroyed_at = Some((self.random.uniform() * f64::from(duration.nominal)) as u32);
+            destroyed_at = Some((self.random.uniform() * f64::from(nominal)) as u32);
         }
         let is_alone = (0..self.nodes.len()).all(|index| senders.contains(&index) || !self.nodes[index].is_on_bus());
         let usual = self.rate.unwrap_or(Rate::USUAL);
         let time =
             |nominal: u32, data: u32| f64::from(nominal + INTERMISSION) / usual.nominal + f64::from(data) / usual.data;
-        let Duration { nominal, data } = duration;
         let (outcome, time) = match destroyed_at {
             Some(bits) => (Outcome::Destroyed, time(bits + ERROR_FRAME, 0)),
             None if is_alone => (Outcome::Unacknowledged, time(nominal + ERROR_FRAME, data)),
@@ -223,12 +221,6 @@ impl Medium {
         };
         self.statistics.busy += time;
         self.transmission = Some(Transmission { senders, stopped, outcome, end: start + time });
-    }
-
-    /// Time of a node's waiting frame on the bus.
-    fn duration(&self, sender: Option<usize>) -> Duration {
-        let frame = sender.and_then(|index| self.nodes[index].front());
-        frame.map_or(Duration::default(), |(frame, _)| Bits::new(frame).duration())
     }
 
     fn finish(&mut self, transmission: Transmission) {

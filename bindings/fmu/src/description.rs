@@ -1,15 +1,16 @@
 //! modelDescription.xml of FMI 2.0 and 3.0. It names no time, so that equal joints give equal files.
 
+use report::escape::escaped_xml;
+
 use crate::model::{Content, Fmi, Model};
-use crate::variables::{Kind, ONE, Role, Unit, Variable};
+use crate::variables::{Kind, Role, Unit, Variable};
 
 /// Name and version of the tool.
 const TOOL: &str = concat!("joint ", env!("CARGO_PKG_VERSION"));
 
 /// Text for an attribute.
 fn escaped(text: &str) -> String {
-    let plain = text.replace(char::is_control, " ");
-    plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    escaped_xml(&text.replace(char::is_control, " "))
 }
 
 /// modelDescription.xml.
@@ -102,7 +103,7 @@ fn variable(fmi: Fmi, index: usize, of: &Variable) -> String {
         Kind::Real(_) | Kind::Integer => format!(" start=\"{start}\""),
     });
     let unit = match of.kind {
-        Kind::Real(unit) => format!(" unit=\"{}\"", if unit == ONE { ONE.0 } else { unit.0 }),
+        Kind::Real(unit) => format!(" unit=\"{}\"", unit.0),
         Kind::Integer | Kind::Boolean => String::new(),
     };
     let shared = format!(

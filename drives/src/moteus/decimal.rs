@@ -177,8 +177,8 @@ fn parse_exponent(text: &[u8]) -> Option<i32> {
     (!digits.is_empty()).then_some(sign * value)
 }
 
-/// Number as text with six digits, or as many more as [`parse`] needs to read it back: plain from 1e-5 to below 1e16, else with an
-/// exponent.
+/// Number as text with six digits, or as many more as [`parse`] needs to read it back: plain from 1e-5 to below 1e16,
+/// else with an exponent.
 pub fn print(number: f32) -> String<MAX_LENGTH> {
     let mut text = String::new();
     // A text that is too long would be cut off; none is.

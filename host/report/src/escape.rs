@@ -15,6 +15,11 @@ pub fn escaped_json(text: &str) -> Cow<'_, str> {
     replaced(text, |code| format!("\\u{code:04x}"))
 }
 
+/// Returns a text for a text node or a quoted attribute of XML. Control characters stay.
+pub fn escaped_xml(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
 /// Returns true if [`escaped`] leaves a text unchanged.
 pub fn is_plain(text: &str) -> bool {
     matches!(escaped(text), Cow::Borrowed(_))

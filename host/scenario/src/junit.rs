@@ -91,6 +91,5 @@ fn skipped_suite(xml: &mut String, not_run: &NotRun, date: &str) {
 }
 
 fn escaped(text: &str) -> String {
-    let text = escape::escaped(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    text.replace('"', "&quot;").replace(['\t', '\r'], " ")
+    escape::escaped_xml(&escape::escaped(text)).replace(['\t', '\r'], " ")
 }

@@ -7,7 +7,7 @@ use super::compact;
 use super::ink::{self, Ink};
 use super::panel::Panel;
 use super::unit::Unit;
-use crate::escape::escaped;
+use crate::escape::{escaped, escaped_xml};
 
 /// A picture.
 pub struct Figure {
@@ -72,7 +72,7 @@ impl Figure {
         }
         let (width, height) = (self.shape.width * FINE, height * FINE);
         let plain = format!("<svg width=\"{width}\" height=\"{height}\"");
-        let title = escaped(&self.title).replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+        let title = escaped_xml(&escaped(&self.title));
         // Default attributes of plotters make up half of a picture of many small parts.
         let svg = compact::compact(&svg.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""));
         ink::with_variables(svg.replacen(&plain, &format!("<svg role=\"img\" aria-label=\"{title}\""), 1))

@@ -59,7 +59,9 @@ macro_rules! for_each_joint {
 }
 
 impl<'t> Plant<'t> {
-    /// Plant at rest; fails if the tables have no plant.
+    /// Plant at rest; fails if the tables have no plant. `#[inline]` compiles it only for callers, of which the C library
+    /// has none: with two users of the joints' constructor, `new_in` would hold each joint on the stack twice.
+    #[inline]
     pub fn new(blob: &Blob<'t>) -> Result<Self, BlobError> {
         let (gears, around) = blob.plant()?;
         Ok(Self(match gears {

@@ -23,10 +23,15 @@ pub fn workspace() -> PathBuf {
     package.ancestors().nth(2).unwrap_or(package).to_path_buf()
 }
 
+/// Returns true for a program that was installed without the workspace's sources.
+pub fn is_installed() -> bool {
+    INSTALLED.get().is_some()
+}
+
 /// Refuses work that needs the sources, if the program was installed without them. `purpose` completes "... needs", such
 /// as "a firmware image".
 pub fn require_sources(purpose: &str) -> Outcome<()> {
-    if INSTALLED.get().is_none() {
+    if !is_installed() {
         return Ok(());
     }
     Err(Failure::new(format!(

@@ -306,14 +306,6 @@ fn problem(span: std::ops::Range<usize>, message: impl Into<String>, help: impl 
     Problem { span, message: message.into(), help: help.into(), severity: Severity::Error }
 }
 
-/// Recorded motion of a file, if any.
-pub fn recorded_motion(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion>> {
-    match &file.profile.trajectory {
-        Trajectory::File(name) => RecordedMotion::read(&folder.join(name)).map(Some),
-        _ => Ok(None),
-    }
-}
-
 fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: u64) -> SharedProfile {
     match (&profile.trajectory, recorded) {
         (_, Some(recorded)) => Arc::new(recorded.clone()),

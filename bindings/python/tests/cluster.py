@@ -209,7 +209,7 @@ def submit_and_kill(out):
     killed, due = 0, time.monotonic() + 2
     while output("squeue", "-h"):
         if time.monotonic() > due:
-            found = output("pgrep", "-f", f"lostmotion task {out}/tasks", check=False).split()
+            found = output("pgrep", "-f", f"task {out}/tasks --number", check=False).split()
             if found:
                 try:
                     os.kill(int(random.choice(found)), signal.SIGKILL)

@@ -476,7 +476,7 @@ fn lasting(out: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn tasks_give_record_of_one_process() {
     let folder = folder();
-    let file = test_file(folder.path(), "[controller]\nrivals = [\"motor_pid\"]");
+    let file = test_file(folder.path(), "profile = \"T2\"\n[controller]\nrivals = [\"motor_pid\"]");
     let [one, other] = ["one", "other"].map(|name| folder.path().join(name));
     let hil = |out: &Path, options: &[&str]| {
         joint(&[&["hil", text(&file), "--host", "--seed", "1-3", "--memory", "--out", text(out)], options].concat())
@@ -509,7 +509,7 @@ fn tasks_give_record_of_one_process() {
 #[test]
 fn tasks_without_host_rejected() {
     let folder = folder();
-    let file = test_file(folder.path(), "");
+    let file = test_file(folder.path(), "profile = \"T2\"");
     let hil = |options: &[&str]| joint(&[&["hil", text(&file)], options].concat());
     hil(&["--resume"]).refused(&["--resume runs tests as tasks, which have no board", "--host"]);
     hil(&["--slurm"]).refused(&["--slurm runs tests as tasks", "--host"]);

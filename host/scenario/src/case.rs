@@ -2,7 +2,6 @@
 //! the motion, and the disturbance torques.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use joint_file::{JointFile, Problem, Severity};

@@ -10,7 +10,7 @@ use super::campaign::{self, FinishedRuns, RunOptions};
 use super::log_file;
 use super::plant::PlantName;
 use super::record::TestRun;
-use super::suite::{self, Test};
+use super::suite;
 use super::{FILES, PreparedGroup, TaskOptions, TestRequest};
 use report::failure::Outcome;
 use report::folder::{self, Folder};

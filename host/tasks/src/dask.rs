@@ -27,7 +27,7 @@ const CHECK_INTERVAL: Duration = Duration::from_millis(50);
 #[serde(rename_all = "snake_case")]
 enum Event {
     /// A task has its result.
-    Done(String),
+    Done,
     /// Remark for the user.
     Remark(String),
     /// The client ends with this failure.
@@ -66,7 +66,7 @@ pub(crate) fn run_with(python: &str, address: &str, folder: &Path, progress: &Pr
         let mut failure = None;
         for line in stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines()).map_while(Result::ok) {
             match serde_json::from_str(&line) {
-                Ok(Event::Done(_)) => progress.advance(1),
+                Ok(Event::Done) => progress.advance(1),
                 Ok(Event::Remark(remark)) => progress.print_message(&remark),
                 Ok(Event::Failed { message, help }) => failure = Some(Failure::new(message).with_help(help)),
                 Err(_) => {}

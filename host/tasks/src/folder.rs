@@ -10,7 +10,8 @@ use report::progress::Progress;
 use report::write::write_bytes;
 use report::{folder, interruption, output};
 
-use crate::list::{Task, TaskList, sha256};
+use crate::digest::sha256;
+use crate::list::{Task, TaskList};
 use crate::{EngineArguments, dask, slurm};
 
 /// Name of the list.

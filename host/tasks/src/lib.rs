@@ -7,6 +7,7 @@
 //! result with files.
 
 mod dask;
+mod digest;
 mod folder;
 mod list;
 pub mod package;

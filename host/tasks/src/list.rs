@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use report::failure::{Failure, Outcome};
 use report::input;
 
+use crate::digest::sha256;
 use crate::program;
 
 /// Name and version of the format; the version rises when a field changes its meaning or is removed.
@@ -150,11 +150,6 @@ impl Task {
                 .with_help("run the command again that made the tasks")
         })
     }
-}
-
-/// SHA-256 in hexadecimal.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use report::provenance;
 
-use crate::list::sha256;
+use crate::digest::sha256;
 
 static VERSION: OnceLock<String> = OnceLock::new();
 

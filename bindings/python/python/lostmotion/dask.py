@@ -111,7 +111,7 @@ def main(address: str, folder: Path) -> int:
             error = future.exception()
             if error is None:
                 write(folder / f"{digest}.result", future.result())
-                say(done=digest)
+                say(done=None)
             elif isinstance(error, (KilledWorker, TaskKilled)) and lost[digest] < LOST_MAX:
                 lost[digest] += 1
                 completed.add(submit(digest))

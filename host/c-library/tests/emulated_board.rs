@@ -135,6 +135,9 @@ fn costs_match_docs_and_header() {
         if target == Target::M4f {
             costs += &format!("\n### Target {}\n{}", target.name(), costs::section(&counted, &joint, machine));
         }
+        for stack in &counted.stacks {
+            println!("{}: {stack:?}", target.name());
+        }
         assert_eq!(counted.stacks.len(), bounds.len(), "every call has a bound of its stack");
         for stack in counted.stacks {
             let (_, most) = bounds.iter().find(|(name, _)| *name == stack.name).expect("a bound");

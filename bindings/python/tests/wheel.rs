@@ -27,6 +27,7 @@ const PACKAGES: [&str; 7] = [
     "nbclient==0.11.0",
     "ipykernel==7.4.0",
     "mypy==2.4.1",
+    "gymnasium==1.4.0",
 ];
 /// Version of the tool that names the oldest C library of the wheel.
 const AUDITWHEEL: &str = "auditwheel==6.8.2";

@@ -19,7 +19,7 @@ use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 /// Version of maturin that the wheel is built with.
 const MATURIN: &str = "maturin==1.16.0";
 /// Packages of the tests, with pytest and what runs a notebook.
-const PACKAGES: [&str; 7] = [
+const PACKAGES: [&str; 8] = [
     "numpy==2.4.6",
     "pytest==9.2.0",
     "pandas==3.1.1",

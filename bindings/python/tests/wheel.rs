@@ -20,7 +20,7 @@ use release::source::Source;
 use report::workspace::workspace;
 
 /// Packages of the tests, with pytest and what runs a notebook.
-const PACKAGES: [&str; 7] = [
+const PACKAGES: [&str; 8] = [
     "numpy==2.4.6",
     "pytest==9.2.0",
     "pandas==3.1.1",
@@ -28,6 +28,7 @@ const PACKAGES: [&str; 7] = [
     "nbclient==0.11.0",
     "ipykernel==7.4.0",
     "mypy==2.4.1",
+    "gymnasium==1.4.0",
 ];
 /// Version of the tool that names the oldest C library of the wheel.
 const AUDITWHEEL: &str = "auditwheel==6.8.2";

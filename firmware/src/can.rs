@@ -4,12 +4,13 @@
 //! The receive interrupt preempts the tick, since the FIFO of three frames would overflow in a tick of more than 100 us:
 //! a frame of 11 bits without data takes 47 us at 1 Mbit/s. The timer's interrupt has the priority of the receive
 //! interrupt and calls [`Receiving::begin_period`]: frames that arrive later, even before the tick's first instruction,
-//! are left to the next tick. Each frame is thus handled in a definite period, as in the twin.
+//! are left to the next tick. Each frame is thus handled in a definite period, as in the twin, even if a full bus makes
+//! ticks so long that one runs after the next period has begun: a tick that is late is made up for, up to [`PERIODS`].
 //!
 //! At control rates of 5 kHz and above the queue of [`FRAMES`] cannot overflow while ticks occur: a frame takes 47 us at
 //! 1 Mbit/s at least, 30 us with data at 8 Mbit/s, so that at most 14 arrive in two periods of 200 us.
 
-use core::sync::atomic::Ordering::Relaxed;
+use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use drives::Frame;
 
@@ -20,6 +21,8 @@ use crate::sized_queue::{SizedConsumer, SizedProducer};
 const PLACES: usize = 16;
 /// Frames that fit the queue.
 pub const FRAMES: usize = PLACES - 1;
+/// Periods that may have begun before their ticks have run.
+pub const PERIODS: usize = 4;
 /// Frames that the FIFO of a peripheral holds at most, which bounds the interrupt.
 const FIFO: usize = 3;
 
@@ -44,7 +47,25 @@ pub trait CanSender {
 /// Frames between interrupt and tick.
 pub struct Received {
     queue: Queue<Frame, PLACES>,
-    due: AtomicU32,
+    periods: Periods,
+}
+
+/// Periods that have begun.
+struct Periods {
+    /// Number of periods since power-up; wraps.
+    begun: AtomicU32,
+    /// Frames that had arrived at the begin of the last periods, by the number of the period; wraps.
+    due: [AtomicU32; PERIODS],
+}
+
+impl Periods {
+    const fn new() -> Self {
+        Self { begun: AtomicU32::new(0), due: [const { AtomicU32::new(0) }; PERIODS] }
+    }
+
+    fn due(&self, period: u32) -> &AtomicU32 {
+        &self.due[period as usize % PERIODS]
+    }
 }
 
 impl Default for Received {
@@ -56,15 +77,15 @@ impl Default for Received {
 impl Received {
     /// Empty queue.
     pub const fn new() -> Self {
-        Self { queue: Queue::new(), due: AtomicU32::new(0) }
+        Self { queue: Queue::new(), periods: Periods::new() }
     }
 
     /// Ends of the interrupts and of the tick.
     pub fn split<R: CanReceiver>(&mut self, receiver: R) -> (Receiving<'_, R>, Inbox<'_>) {
-        let Self { queue, due } = self;
+        let Self { queue, periods } = self;
         let (producer, consumer): (Producer<'_, _>, Consumer<'_, _>) = queue.split();
-        let receiving = Receiving { receiver, frames: SizedProducer::new(producer), count: 0, due };
-        (receiving, Inbox { frames: SizedConsumer::new(consumer), count: 0, due })
+        let receiving = Receiving { receiver, frames: SizedProducer::new(producer), count: 0, periods };
+        (receiving, Inbox { frames: SizedConsumer::new(consumer), count: 0, due: 0, done: 0, periods })
     }
 }
 
@@ -74,7 +95,7 @@ pub struct Receiving<'a, R> {
     frames: SizedProducer<'a, Frame, PLACES>,
     /// Frames put into the queue since power-up; wraps.
     count: u32,
-    due: &'a AtomicU32,
+    periods: &'a Periods,
 }
 
 impl<R: CanReceiver> Receiving<'_, R> {
@@ -91,7 +112,9 @@ impl<R: CanReceiver> Receiving<'_, R> {
 
     /// Begins a period: its tick handles the frames that are in the queue now.
     pub fn begin_period(&mut self) {
-        self.due.store(self.count, Relaxed);
+        let period = self.periods.begun.load(Relaxed);
+        self.periods.due(period).store(self.count, Relaxed);
+        self.periods.begun.store(period.wrapping_add(1), Release);
     }
 }
 
@@ -100,14 +123,40 @@ pub struct Inbox<'a> {
     frames: SizedConsumer<'a, Frame, PLACES>,
     /// Frames taken since power-up; wraps.
     count: u32,
-    due: &'a AtomicU32,
+    /// Frames that had arrived when the period of the present tick began; wraps.
+    due: u32,
+    /// Periods whose ticks have begun; wraps.
+    done: u32,
+    periods: &'a Periods,
 }
 
 impl Inbox<'_> {
+    /// Begins the tick of the oldest period without one; `false` if there is none. Of more than [`PERIODS`] periods only
+    /// the last one gets its tick.
+    #[inline]
+    pub fn begin_tick(&mut self) -> bool {
+        let behind = self.behind();
+        if behind == 0 {
+            return false;
+        }
+        if behind > PERIODS as u32 {
+            self.done = self.done.wrapping_add(behind - 1);
+        }
+        self.due = self.periods.due(self.done).load(Relaxed);
+        self.done = self.done.wrapping_add(1);
+        true
+    }
+
+    /// Returns the number of periods that have begun without a tick.
+    #[inline]
+    pub fn behind(&self) -> u32 {
+        self.periods.begun.load(Acquire).wrapping_sub(self.done)
+    }
+
     /// Returns the number of frames that arrived before this period and were not taken.
     #[inline]
     pub fn count(&self) -> usize {
-        (self.due.load(Relaxed).wrapping_sub(self.count) as usize).min(FRAMES)
+        (self.due.wrapping_sub(self.count) as usize).min(FRAMES)
     }
 
     /// Takes the oldest frame.

@@ -42,12 +42,16 @@ impl<'a, M: Maker, C: CanSender, const N: usize> DriveTick<'a, M, C, N> {
         Self { drive, bus, inbox, outbox: Outbox::default() }
     }
 
-    /// Runs one control period: state of the bus, frames that arrived, joint and drive, cyclic frames, sending. The parts
+    /// Runs the oldest control period without a tick, if there is one, and returns whether another one waits: state of the bus, frames that arrived, joint and drive, cyclic frames, sending. The parts
     /// are not inlined: each needs much stack, but not at the same time.
-    pub fn tick(&mut self) {
+    pub fn tick(&mut self) -> bool {
+        if !self.inbox.begin_tick() {
+            return false;
+        }
         self.serve();
         self.drive.advance();
         self.send();
+        self.inbox.behind() > 0
     }
 
     /// Tells the server about the bus, and hands it the frames that arrived.

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use drives::drive::State;
 use drives::frame::{Id, standard};
 use drives::{Drive, Frame};
-use firmware::can::{CanReceiver, CanSender, FRAMES, Received};
+use firmware::can::{CanReceiver, CanSender, FRAMES, PERIODS, Received};
 use firmware::drive::DriveTick;
 use model_core::VirtualJointDesign;
 use virtual_drive::maker::{Cia402, Maker, Odrive3};
@@ -77,7 +77,7 @@ fn run<M: Maker>(ticks: usize, mut each: impl FnMut(usize, &mut Bus) -> usize) -
                 interrupt.service();
             }
             interrupt.begin_period();
-            tick.tick();
+            assert!(!tick.tick());
         }
         tick.drive().clone()
     });
@@ -125,6 +125,7 @@ fn frames_belong_to_the_period_before() {
     (0..10).for_each(|_| interrupt.service());
     assert_eq!(inbox.count(), 0);
     interrupt.begin_period();
+    assert!(inbox.begin_tick());
     assert_eq!(inbox.count(), FRAMES);
     let taken: Vec<u32> = (0..FRAMES).filter_map(|_| inbox.take()).map(|frame| frame.raw_id()).collect();
     assert_eq!(taken, (0..FRAMES as u32).collect::<Vec<_>>());
@@ -132,7 +133,34 @@ fn frames_belong_to_the_period_before() {
     interrupt.service();
     assert_eq!(inbox.count(), 0);
     interrupt.begin_period();
+    assert!(inbox.begin_tick());
     assert_eq!((inbox.count(), inbox.take().map(|frame| frame.raw_id())), (2, Some(100)));
+}
+
+/// A tick that is late takes the frames of its own period; beyond four periods all but the last are lost.
+#[test]
+fn late_ticks_keep_their_frames() {
+    let bus = Shared::default();
+    let mut received = Received::new();
+    let (mut interrupt, mut inbox) = received.split(Half(Rc::clone(&bus)));
+    let mut begin = |frames: std::ops::Range<u16>| {
+        bus.borrow_mut().fifo.extend(frames.filter_map(|it| Frame::classic(standard(it), &[])));
+        interrupt.service();
+        interrupt.begin_period();
+    };
+    begin(0..1);
+    begin(1..3);
+    let mut counts = Vec::new();
+    while inbox.begin_tick() {
+        counts.push((inbox.behind(), inbox.count()));
+        while inbox.count() > 0 {
+            assert!(inbox.take().is_some());
+        }
+    }
+    assert_eq!(counts, [(1, 1), (0, 2)]);
+    (0..PERIODS as u16 + 1).for_each(|period| begin(period..period + 1));
+    assert!(inbox.begin_tick());
+    assert_eq!((inbox.behind(), inbox.count()), (0, PERIODS + 1));
 }
 
 /// A drive on CANopen reports that its controller went off the bus.

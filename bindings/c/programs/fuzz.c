@@ -16,7 +16,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { BUFFERS = 18, CALLS = 12 };
+enum { BUFFERS = 20, CALLS = 12 };
 
 /* Argument of a call: place, size, and content before the call. */
 typedef struct Buffer {
@@ -130,6 +130,8 @@ int main(int count, char **arguments) {
     JointTablesFacts *facts;
     uint64_t *tables, *damaged, *digest;
     unsigned char *memory;
+    uint32_t *state_words;
+    float *speeds;
     unsigned long sequence;
     state = (count > 2 ? strtoull(arguments[2], NULL, 10) : 1u) * 0x9e3779b97f4a7c15ull + 1u;
     observers[0] = (JointObserver *)guarded(sizeof(JointObserver));
@@ -149,6 +151,8 @@ int main(int count, char **arguments) {
     facts = (JointTablesFacts *)guarded(sizeof(JointTablesFacts));
     digest = (uint64_t *)guarded(sizeof(uint64_t));
     memory = (unsigned char *)guarded(JOINT_MEMORY_BYTES);
+    state_words = (uint32_t *)guarded(JOINT_PLANT_STATE_WORDS * sizeof(uint32_t));
+    speeds = (float *)guarded(2 * sizeof(float));
     tables = (uint64_t *)guarded(sizeof tables_of_test);
     memcpy(tables, tables_of_test, sizeof tables_of_test);
     damaged = damaged_tables;
@@ -165,7 +169,7 @@ int main(int count, char **arguments) {
             JointObserver *const observer = observers[which];
             const uint64_t *from = tables;
             JointStatus status;
-            uint32_t kind = chance(20);
+            uint32_t kind = chance(25);
             is_wrong = 0;
             /* Most of the first calls start objects. */
             if (call < 5 && chance(4) != 0) {
@@ -325,6 +329,43 @@ int main(int count, char **arguments) {
                 void *const to = pointer(plant, probe);
                 is_wrong |= !started[4];
                 status = joint_plant_digest((JointPlant *)to, (uint64_t *)pointer(digest, NULL));
+                break;
+            }
+            case 19: {
+                void *const to = pointer(plant, observer);
+                const float command = number(), inverse_inertia = number(), acceleration = number();
+                is_wrong |= !started[4];
+                status = joint_plant_step_with_link((JointPlant *)to, command, inverse_inertia, acceleration,
+                                                    (float *)pointer(speeds, NULL));
+                break;
+            }
+            case 20: {
+                void *const to = pointer(plant, observer);
+                const float fraction = number(), speed = number();
+                is_wrong |= !started[4] || fraction > 1.0f || fraction < -1.0f;
+                status = joint_plant_shift((JointPlant *)to, (int32_t)chance(2000) - 1000, fraction, speed);
+                break;
+            }
+            case 21: {
+                void *const to = pointer(plant, compensation);
+                is_wrong |= !started[4];
+                status = joint_plant_save((JointPlant *)to, (uint32_t *)pointer(state_words, NULL), size(JOINT_PLANT_STATE_WORDS));
+                break;
+            }
+            case 22: {
+                void *const to = pointer(plant, probe);
+                is_wrong |= !started[4];
+                status = joint_plant_speeds((JointPlant *)to, (float *)pointer(speeds, NULL), (float *)pointer(speeds + 1, NULL));
+                break;
+            }
+            case 23: {
+                void *const to = pointer(plant, observer);
+                const uint32_t *const from = (const uint32_t *)pointer(state_words, NULL);
+                const size_t words = size(JOINT_PLANT_STATE_WORDS);
+                /* The program does not track whether the words are a state, and a finite one. */
+                const int sure = is_wrong || !started[4];
+                status = joint_plant_load((JointPlant *)to, from, words);
+                is_wrong = sure || status != JOINT_STATUS_OK;
                 break;
             }
             default: {

@@ -34,6 +34,8 @@ static JointWiringStep wiring_step;
 static JointWiringVerdicts verdicts;
 static uint64_t digest;
 static uint8_t memory[JOINT_MEMORY_BYTES];
+static uint32_t state[JOINT_PLANT_STATE_WORDS];
+static float link_torque, speeds[2];
 static JointObserver other;
 
 #define TABLES tables_of_test, sizeof tables_of_test
@@ -58,6 +60,13 @@ static JointStatus follow(void) {
 static JointStatus yield(void) { return joint_compensation_yield(&run.compensation, &run.observer, &spring, &run.torque); }
 static JointStatus probe_step(void) { return joint_probe_step(&probe, &run.observer, &probed); }
 static JointStatus plant_step(void) { return joint_plant_step(&run.plant, run.torque.motor_torque_Nm, 0.0f); }
+static JointStatus plant_step_with_link(void) {
+    return joint_plant_step_with_link(&run.plant, run.torque.motor_torque_Nm, 5.0f, 0.0f, &link_torque);
+}
+static JointStatus plant_speeds(void) { return joint_plant_speeds(&run.plant, &speeds[0], &speeds[1]); }
+static JointStatus plant_shift(void) { return joint_plant_shift(&run.plant, 0, 0.0f, 0.0f); }
+static JointStatus plant_save(void) { return joint_plant_save(&run.plant, state, JOINT_PLANT_STATE_WORDS); }
+static JointStatus plant_load(void) { return joint_plant_load(&run.plant, state, JOINT_PLANT_STATE_WORDS); }
 static JointStatus plant_samples(void) { return joint_plant_samples(&run.plant, &samples); }
 static JointStatus plant_outputs(void) { return joint_plant_outputs(&run.plant, &outputs); }
 static JointStatus plant_digest(void) { return joint_plant_digest(&run.plant, &digest); }
@@ -85,6 +94,7 @@ static Stack running[] = {
     {"joint_plant_step", plant_step, 0},
     {"joint_plant_outputs", plant_outputs, 0},
     {"joint_plant_digest", plant_digest, 0},
+    {"joint_plant_speeds", plant_speeds, 0},
 };
 
 /* Instead of the compensation. */
@@ -96,6 +106,10 @@ static Stack ending[] = {
     {"joint_wiring_verdicts", check_verdicts, 0},
     {"joint_observer_save", observer_save, 0},
     {"joint_observer_load", observer_load, 0},
+    {"joint_plant_step_with_link", plant_step_with_link, 0},
+    {"joint_plant_shift", plant_shift, 0},
+    {"joint_plant_save", plant_save, 0},
+    {"joint_plant_load", plant_load, 0},
 };
 
 __attribute__((noinline)) static JointStatus measure(Stack *stack, uint32_t words) {

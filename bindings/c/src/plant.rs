@@ -2,7 +2,8 @@
 
 use core::mem::MaybeUninit;
 
-use c_plant::{MOST_PLANETS, Motion, Plant};
+use c_plant::{MOST_PLANETS, Motion, Plant, STATE_WORDS, StateError};
+use model_core::virtual_joint::DrivenLink;
 
 use table_blob::Blob;
 
@@ -16,6 +17,9 @@ pub const JOINT_PLANT_WORDS: usize = 80;
 /// Maximum number of planets of a plant.
 pub const JOINT_MOST_PLANETS: usize = 5;
 const _: () = assert!(JOINT_MOST_PLANETS == MOST_PLANETS);
+/// 32-bit words of a plant's saved state.
+pub const JOINT_PLANT_STATE_WORDS: usize = 32;
+const _: () = assert!(JOINT_PLANT_STATE_WORDS == STATE_WORDS);
 
 /// Storage of a plant. Its content is the library's own.
 #[repr(C)]
@@ -121,6 +125,102 @@ pub unsafe extern "C" fn joint_plant_step(
     .into()
 }
 
+/// Advances by one control period with a link that another simulator moves. Its acceleration is the torque of the gears
+/// times `link_inverse_inertia_per_kg_m2`, plus `link_acceleration_rad_per_s2`. `link_torque_Nm` receives the mean torque of
+/// the gears on the link. Inertia, weight and friction of the link are the other simulator's; the tables' have no effect.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_plant_step_with_link(
+    plant: *mut JointPlant,
+    motor_torque_Nm: f32,
+    link_inverse_inertia_per_kg_m2: f32,
+    link_acceleration_rad_per_s2: f32,
+    link_torque_Nm: *mut f32,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open::<Plant<'static>>(plant) }?;
+        usable(link_torque_Nm)?;
+        let link =
+            DrivenLink { inverse_inertia: link_inverse_inertia_per_kg_m2, acceleration: link_acceleration_rad_per_s2 };
+        if ![motor_torque_Nm, link.inverse_inertia, link.acceleration].iter().all(|value| value.is_finite()) {
+            return Err(JointStatus::NotFinite);
+        }
+        let torque = object.value.advance_with_link(motor_torque_Nm, link);
+        // SAFETY: aligned, not NULL, and valid for writes.
+        unsafe { link_torque_Nm.write(torque) };
+        Ok(())
+    })
+    .into()
+}
+
+/// Turns the whole plant by an angle at the link, whole turns and a fraction, and changes the link's speed; the teeth keep
+/// their deformations.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_plant_shift(
+    plant: *mut JointPlant,
+    turns: i32,
+    fraction_turns: f32,
+    speed_rad_per_s: f32,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open::<Plant<'static>>(plant) }?;
+        if !(fraction_turns.is_finite() && speed_rad_per_s.is_finite()) {
+            return Err(JointStatus::NotFinite);
+        }
+        if fraction_turns.abs() > 1.0 {
+            return Err(JointStatus::FractionOutOfRange);
+        }
+        object.value.shift(turns, fraction_turns, speed_rad_per_s);
+        Ok(())
+    })
+    .into()
+}
+
+/// Copies the state of a plant, without addresses. `words` is JOINT_PLANT_STATE_WORDS.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_plant_save(plant: *const JointPlant, state: *mut u32, words: usize) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open_shared::<Plant<'static>>(plant) }?;
+        usable(state)?;
+        if words != STATE_WORDS {
+            return Err(JointStatus::WrongSize);
+        }
+        let mut found = [0; STATE_WORDS];
+        object.value.save_state(&mut found);
+        // SAFETY: aligned, not NULL, and valid for writes of this many words.
+        unsafe { state.cast::<[u32; STATE_WORDS]>().write(found) };
+        Ok(())
+    })
+    .into()
+}
+
+/// Continues from a saved state of a plant of the same joint, in this process or another. `words` is
+/// JOINT_PLANT_STATE_WORDS. Equal states continue with equal bits.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_plant_load(plant: *mut JointPlant, state: *const u32, words: usize) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open::<Plant<'static>>(plant) }?;
+        usable(state)?;
+        if words != STATE_WORDS {
+            return Err(JointStatus::WrongSize);
+        }
+        // SAFETY: aligned, not NULL, and this many words by the caller's promise.
+        let state = unsafe { state.cast::<[u32; STATE_WORDS]>().read() };
+        object.value.load_state(&state).map_err(|error| match error {
+            StateError::OtherJoint => JointStatus::OtherJoint,
+            StateError::NotFinite => JointStatus::NotFinite,
+        })
+    })
+    .into()
+}
+
 /// Present encoder readings, and the torque that was commanded last.
 #[unsafe(no_mangle)]
 #[must_use]
@@ -148,6 +248,30 @@ pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *
         let found = outputs(&object.value.motion());
         // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { motion.write(found) };
+        Ok(())
+    })
+    .into()
+}
+
+/// Present speeds of motor and link.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_plant_speeds(
+    plant: *const JointPlant,
+    motor_rad_per_s: *mut f32,
+    link_rad_per_s: *mut f32,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open_shared::<Plant<'static>>(plant) }?;
+        usable(motor_rad_per_s)?;
+        usable(link_rad_per_s)?;
+        let [motor, link] = object.value.speeds();
+        // SAFETY: aligned, not NULL, and valid for writes.
+        unsafe {
+            motor_rad_per_s.write(motor);
+            link_rad_per_s.write(link);
+        }
         Ok(())
     })
     .into()

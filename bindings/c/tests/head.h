@@ -33,18 +33,21 @@
  *     joint_plant_start 1536
  *     joint_observer_load 1408
  *     joint_observer_step, joint_observer_save 1280
+ *     joint_plant_step_with_link 1152
  *     joint_wiring_verdicts 1024
  *     joint_observer_start, joint_observer_start_without_maps, joint_compensation_follow 896
  *     joint_compensation_yield 768
  *     joint_plant_step 704
- *     joint_wiring_step 576
+ *     joint_wiring_step, joint_plant_load 576
  *     joint_wiring_start 480
+ *     joint_plant_save 448
  *     joint_plant_outputs, joint_compensation_start 416
- *     joint_tables_facts 256
+ *     joint_tables_facts, joint_plant_shift 256
  *     joint_observer_estimates, joint_probe_start 208
  *     joint_plant_samples 160
  *     joint_plant_digest 96
  *     joint_probe_step 40
+ *     joint_plant_speeds 24
  *
  * One control period:
  *

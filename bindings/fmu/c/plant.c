@@ -22,11 +22,15 @@ JointStatus model_outputs(Model *model) {
     double *const values = model->values;
     JointPlantOutputs motion;
     JointSamples samples;
+    float motor_speed = 0.0f, link_speed = 0.0f;
     double carrier_rad;
     unsigned planet;
     JointStatus status = joint_plant_outputs(&model->objects.plant, &motion);
     if (status == JOINT_STATUS_OK) {
         status = joint_plant_samples(&model->objects.plant, &samples);
+    }
+    if (status == JOINT_STATUS_OK) {
+        status = joint_plant_speeds(&model->objects.plant, &motor_speed, &link_speed);
     }
     if (status != JOINT_STATUS_OK) {
         return status;
@@ -34,6 +38,8 @@ JointStatus model_outputs(Model *model) {
     carrier_rad = ((double)motion.carrier_turns + (double)motion.carrier_fraction / 4294967296.0) * TURN_RAD;
     values[VALUE_motor_angle] = RATIO * carrier_rad + (double)motion.motor_offset_rad;
     values[VALUE_link_angle] = carrier_rad + (double)motion.link_offset_rad;
+    values[VALUE_motor_speed] = (double)motor_speed;
+    values[VALUE_link_speed] = (double)link_speed;
     values[VALUE_carrier_speed] = (double)motion.carrier_speed_rad_per_s;
     values[VALUE_gap] = (double)motion.gap_m;
     values[VALUE_wind_up] = (double)motion.wind_up_m;

@@ -16,10 +16,6 @@ use crate::variables::{Kind, ONE, Role};
 /// Folders of the crates that the C library consists of, in the workspace.
 const CRATES: [&str; 5] = ["parameters", "model-core", "bindings/tables", "bindings/plant", "bindings/c"];
 
-/// Flags of the C compiler: no fused multiply-add, so that every machine computes equal bits.
-pub const FLAGS: [&str; 6] =
-    ["-std=c99", "-O2", "-fPIC", "-ffp-contract=off", "-fvisibility=hidden", "-Wno-unused-parameter"];
-
 /// Names of the C files to compile.
 pub fn c_files(model: &Model) -> Vec<String> {
     let front = match model.fmi {

@@ -95,6 +95,8 @@ pub fn of_plant(planets: usize) -> Vec<Variable> {
         input("external_torque", NM, "Torque that brakes the link from outside; rounded to 32 bits"),
         output("motor_angle", RAD, "Angle of the motor's shaft, all turns"),
         output("link_angle", RAD, "Angle of the link, all turns"),
+        output("motor_speed", RAD_PER_S, "Speed of the motor's shaft"),
+        output("link_speed", RAD_PER_S, "Speed of the link"),
         output("carrier_speed", RAD_PER_S, "Speed of the carrier's rigid-body motion"),
         output("gap", M, "Gap coordinate along the line of action"),
         output("wind_up", M, "Wind-up between carrier and link along the line of action"),

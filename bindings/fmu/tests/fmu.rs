@@ -259,6 +259,8 @@ fn outputs<const N: usize>(joint: &VirtualJoint<'_, f32, N>, ratio: f64, meshes:
     let mut all = vec![
         ratio * carrier + f64::from(motion.motor_offset),
         carrier + f64::from(motion.link_offset),
+        joint.motor_speed().into(),
+        joint.link_speed().into(),
         motion.carrier_speed.into(),
         motion.gap.into(),
         motion.wind_up.into(),

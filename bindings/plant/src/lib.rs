@@ -2,13 +2,17 @@
 //! Plant of any number of planets behind one type. It is a separate crate because it is compiled for speed, as in the
 //! firmware's images, while `bindings/c` is compiled for size: nothing in here is generic for a caller.
 
+mod state;
+
 use core::mem::MaybeUninit;
 
 use model_core::gears::Tables;
 use model_core::observer::Samples;
-use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+use model_core::virtual_joint::{DrivenLink, SurroundingsTable, VirtualJoint};
 use parameters::ContactState;
 use table_blob::{Blob, BlobError, Gears};
+
+pub use state::{STATE_WORDS, StateError};
 
 /// Maximum number of planets.
 pub const MOST_PLANETS: usize = 5;
@@ -100,6 +104,31 @@ impl<'t> Plant<'t> {
     #[inline(never)]
     pub fn advance(&mut self, command: f32, disturbance: f32) {
         for_each_joint!(&mut self.0, joint => joint.advance(command, disturbance));
+    }
+
+    /// Advances by one control period with a link that another simulator moves, and returns the mean torque of the gears on
+    /// the link [N m].
+    #[inline(never)]
+    pub fn advance_with_link(&mut self, command: f32, link: DrivenLink<f32>) -> f32 {
+        for_each_joint!(&mut self.0, joint => joint.advance_with_link(command, link))
+    }
+
+    /// Turns the whole joint by an angle at the link [turns] and changes its speed [rad/s]; deformations stay.
+    #[inline(never)]
+    pub fn shift(&mut self, turns: i32, fraction: f32, speed: f32) {
+        for_each_joint!(&mut self.0, joint => joint.shift(turns, fraction, speed));
+    }
+
+    /// Writes the state.
+    #[inline(never)]
+    pub fn save_state(&self, words: &mut [u32; STATE_WORDS]) {
+        for_each_joint!(&self.0, joint => state::save(joint, words));
+    }
+
+    /// Replaces the state; a refused state changes nothing.
+    #[inline(never)]
+    pub fn load_state(&mut self, words: &[u32; STATE_WORDS]) -> Result<(), StateError> {
+        for_each_joint!(&mut self.0, joint => state::load(joint, words))
     }
 
     /// Speeds of motor and link [rad/s].

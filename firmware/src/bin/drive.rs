@@ -71,10 +71,12 @@ macro_rules! app {
                 SCB::set_pendsv();
             }
 
-            /// Runs a control period.
+            /// Runs a control period, and the next one if it has begun meanwhile.
             #[task(binds = PendSV, priority = 15, local = [drive])]
             fn tick(cx: tick::Context) {
-                cx.local.drive.tick();
+                if cx.local.drive.tick() {
+                    SCB::set_pendsv();
+                }
             }
 
             /// Takes received frames from the peripheral, before its FIFO overflows in a long tick.

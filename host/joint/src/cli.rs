@@ -70,6 +70,8 @@ enum Command {
     Library(library::Arguments),
     /// Write a joint as a co-simulation unit (FMU) for other simulators: plant, or observer and compensation
     Export(export::Arguments),
+    /// Build everything that users are given: wheel, command, C archives, images, book, digests, SBOM
+    Release(research::Arguments),
     /// Print a completion script for a shell: bash, zsh, fish and others
     Completions(completions::Arguments),
 }
@@ -109,6 +111,7 @@ fn run_subcommand(cli: &Cli) -> Outcome<()> {
         Some(Command::Tables(arguments)) => tables::run(arguments),
         Some(Command::Library(arguments)) => library::run(arguments),
         Some(Command::Export(arguments)) => export::run(arguments),
+        Some(Command::Release(arguments)) => research::run("release", &arguments.rest),
         Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
     }
 }

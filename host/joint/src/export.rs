@@ -1,10 +1,64 @@
 //! `joint export`: a joint for other simulators.
 
-pub use fmu::export::Arguments;
+use std::path::PathBuf;
+
+use board::device::board::Board;
+use fmu::export::Request;
+use fmu::model::{Content, Fmi};
+use joint_file::{named, warnings};
+use mujoco_plugin::export::Plugin;
 use report::failure::Outcome;
-use report::output;
+use report::{folder, output};
+
+/// Arguments of `joint export`.
+#[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("simulator").required(true).args(["fmu", "mujoco"]), after_help = "Examples:
+  joint export q1 --fmu 2 --out q1_plant.fmu       torques [N m] in; angles [rad], gap [m], contacts, mesh forces [N] out
+  joint export q1 --fmu 3 --model controller --out q1_controller.fmu      encoder counts and set-point in, torque out
+  joint export my_joint.toml --fmu 3 --rate 20000 --out my_joint.fmu      20 kHz in place of the joint file's rate
+  joint export q1 --mujoco --out q1.so             actuator plug-in for the MuJoCo that python3 imports, and q1.xml
+
+Communication steps of an FMU and steps of MuJoCo are multiples of the control period [s]; others are refused. An FMU holds
+a binary for this machine, and its sources with a CMakeLists.txt for other machines. Two exports of one joint give the same
+bytes.")]
+pub struct Arguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
+    #[arg(value_name = "FILE", default_value = "q1")]
+    file: PathBuf,
+    /// FMU for this version of the Functional Mock-up Interface
+    #[arg(long, value_enum, value_name = "VERSION")]
+    fmu: Option<Fmi>,
+    /// Actuator plug-in for MuJoCo, compiled for the Python package in this folder [default: the one that python3 imports]
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
+    mujoco: Option<Option<PathBuf>>,
+    /// Part of the joint; for an FMU
+    #[arg(long, value_enum, value_name = "PART", default_value = "plant", conflicts_with = "mujoco")]
+    model: Content,
+    /// File for the FMU or the plug-in; its folder must exist
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Control rate, in Hz [default: from the joint file]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
+    rate: Option<u32>,
+    /// Board whose time a plant's sub-steps are chosen for: a name of boards/, or the path of a board file
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
+    board: Board,
+}
 
 /// Writes the export and prints its path.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    output::print(&fmu::export::run(arguments)?)
+    let Arguments { out, board, .. } = arguments;
+    folder::check_file("out", out, &[&arguments.file])?;
+    let loaded = named::load(&arguments.file)?;
+    warnings::print(&loaded);
+    let mut joint = loaded.file;
+    joint.surroundings.control_rate = arguments.rate.unwrap_or(joint.surroundings.control_rate);
+    let written = match (arguments.fmu, &arguments.mujoco) {
+        (Some(fmi), _) => fmu::export::run(&Request { fmi, content: arguments.model, joint: &joint, board, out }),
+        (None, package) => {
+            let package = package.clone().flatten();
+            mujoco_plugin::export::run(&Plugin { joint: &joint, board, package, out })
+        }
+    };
+    output::print(&written.map_err(|failure| failure.while_doing(format_args!("export of {}", loaded.name)))?)
 }

@@ -3,10 +3,12 @@
 
 #[cfg(feature = "design")]
 pub mod design;
+#[cfg(test)]
+mod driven_link_tests;
 pub mod fault;
 pub mod fault_injector;
 mod plant;
 pub mod tables;
 
-pub use plant::{ActingTorques, VirtualJoint};
+pub use plant::{ActingTorques, DrivenLink, VirtualJoint, VirtualJointState};
 pub use tables::{SurroundingsTable, VirtualJointDesign};

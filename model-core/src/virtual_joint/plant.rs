@@ -13,7 +13,7 @@
 //! [`FrictionTable`] and [`EncoderErrorTable`]; w = speed of the shaft, 1/w_half = `per_speed`, stop = inertia/period.
 
 use crate::gears::Tables;
-use crate::gears::{Model, Outputs, Torques};
+use crate::gears::{Model, Outputs, State, Torques};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
@@ -21,6 +21,9 @@ use crate::observer::{Reading, Samples};
 use crate::virtual_joint::tables::{
     COMMAND_QUEUE_LENGTH, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
 };
+
+/// Passes of [`VirtualJoint::advance_with_link`].
+const LINK_PASSES: usize = 3;
 
 /// Torques of the last period [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -31,6 +34,31 @@ pub struct ActingTorques<T: Real> {
     pub drive: T,
     /// Torque that brakes the link: friction, weight, disturbance.
     pub load: T,
+}
+
+/// Link that another simulator moves, over one control period: `acceleration of the link = torque of the gears *
+/// inverse_inertia + acceleration`. Weight and friction of the link belong to the other simulator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrivenLink<T: Real> {
+    /// Inverse of the inertia that the joint sees at its output [1/(kg m2)].
+    pub inverse_inertia: T,
+    /// Acceleration of the link without a torque of the gears [rad/s2].
+    pub acceleration: T,
+}
+
+/// State of a virtual joint between periods, without references to tables.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VirtualJointState<T: Real, const N: usize> {
+    /// State of the gears.
+    pub gears: State<T, N>,
+    /// Delayed commands, the newest first [N m].
+    pub commands: [T; COMMAND_QUEUE_LENGTH],
+    /// Torque that the current loop has reached [N m].
+    pub current: T,
+    /// Control periods since the start.
+    pub periods: u32,
+    /// Torques of the last period.
+    pub acting: ActingTorques<T>,
 }
 
 /// Joint with its surroundings.
@@ -171,9 +199,78 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.update_outputs();
     }
 
+    /// Advances by one period under a torque command [N m] and the motion of a link that another simulator moves, and
+    /// returns the mean torque of the gears on the link [N m]. The link's own inertia, weight and friction in the tables
+    /// have no effect.
+    ///
+    /// ```text
+    /// load = torque - inertia (torque inverse_inertia + acceleration),   torque = load + inertia (w_end - w_start)/period
+    /// ```
+    ///
+    /// Both equations hold at once for one load; three passes approach it. The error of a pass is the error of the pass
+    /// before times `stiffness period^2 |1/inertia - inverse_inertia| / 6`.
+    #[inline(never)]
+    pub fn advance_with_link(&mut self, command: T, link: DrivenLink<T>) -> T {
+        let table = self.table;
+        let mesh_torque = self.compute_drive(command);
+        let inertia = table.load_friction.stop * table.period;
+        let start = self.shafts.speeds[1];
+        let before = self.model.clone();
+        let mut torque = self.torque_on_link(mesh_torque);
+        for _ in 0..LINK_PASSES {
+            self.model.clone_from(&before);
+            self.acting.load = torque - inertia * (torque * link.inverse_inertia + link.acceleration);
+            self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
+            self.update_outputs();
+            torque = self.acting.load + table.load_friction.stop * (self.shafts.speeds[1] - start);
+        }
+        self.periods = self.periods.wrapping_add(1);
+        torque
+    }
+
+    /// Turns the whole joint by an angle [turns] and changes its speed [rad/s, at the link]; deformations stay.
+    pub fn shift(&mut self, turns: i32, fraction: T, speed: T) {
+        let mut state = *self.model.state();
+        let units = (fraction * self.table.turn * self.table.units_per_radian).to_i64();
+        let carrier = (i64::from(state.rigid.turns) << 32)
+            .wrapping_add((state.rigid.fraction >> 32) as i64)
+            .wrapping_add(i64::from(turns) << 32)
+            .wrapping_add(units);
+        let below = state.rigid.fraction & u64::from(u32::MAX);
+        state.rigid.turns = (carrier >> 32) as i32;
+        state.rigid.fraction = ((carrier as u64) << 32) | below;
+        // Speed of the rigid body [2^-64 turns per period] from 2^-32 turns per second.
+        let change = (speed * self.table.units_per_radian * self.table.period).to_i64();
+        state.rigid.speed = state.rigid.speed.saturating_add(change.saturating_mul(1 << 32));
+        self.model.set_state(state);
+        self.update_outputs();
+    }
+
+    /// Returns the state.
+    pub fn state(&self) -> VirtualJointState<T, N> {
+        let (commands, current, periods, acting) = (self.commands, self.current, self.periods, self.acting);
+        VirtualJointState { gears: *self.model.state(), commands, current, periods, acting }
+    }
+
+    /// Replaces the state. A period after it is computed without what the gears keep from the period before, so that it
+    /// depends on the state alone.
+    pub fn set_state(&mut self, state: &VirtualJointState<T, N>) {
+        self.model.set_state(state.gears);
+        (self.commands, self.current, self.periods) = (state.commands, state.current, state.periods);
+        self.acting = state.acting;
+        self.update_outputs();
+    }
+
     /// Computes the torques that act over the period.
     #[inline(never)]
     fn compute_torques(&mut self, command: T, disturbance: T) {
+        let mesh_torque = self.compute_drive(command);
+        self.compute_load(disturbance, mesh_torque);
+    }
+
+    /// Computes the torques in the air gap and on the sun over the period, and returns the mesh torque at its start.
+    #[inline(always)]
+    fn compute_drive(&mut self, command: T) -> T {
         let table = self.table;
         self.commands.rotate_right(1);
         let limit = table.current.limit;
@@ -183,17 +280,29 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let (sine, _) = sine_cosine::<T>(shafts.motor.wrapping_mul(table.cogging_periods));
         let driving = air_gap + table.cogging_torque * sine;
         let mesh_torque = self.mesh_torque();
-        let [motor_speed, link_speed] = shafts.speeds;
+        let motor_speed = shafts.speeds[0];
         let loss = table.losses[usize::from(mesh_torque * motor_speed < T::ZERO)] * mesh_torque.abs();
         let motor_friction = friction(&table.motor_friction, motor_speed, driving - mesh_torque, loss);
+        (self.acting.air_gap, self.acting.drive) = (air_gap, driving - motor_friction);
+        mesh_torque
+    }
 
+    /// Computes the torque that brakes the link over the period.
+    #[inline(always)]
+    fn compute_load(&mut self, disturbance: T, mesh_torque: T) {
+        let (table, shafts) = (self.table, self.shafts);
         let (sine, _) = sine_cosine::<T>(shafts.link as u32);
         let braking = table.weight * sine + disturbance;
-        let [from_sun, from_wind_up, from_rate] = table.to_link;
-        let to_link =
-            from_sun * mesh_torque + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
-        let load_friction = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
-        self.acting = ActingTorques { air_gap, drive: driving - motor_friction, load: braking + load_friction };
+        let to_link = self.torque_on_link(mesh_torque);
+        let load_friction = friction(&table.load_friction, shafts.speeds[1], to_link - braking, T::ZERO);
+        self.acting.load = braking + load_friction;
+    }
+
+    /// Present torque of the gears on the link at the present mesh torque [N m].
+    #[inline(always)]
+    fn torque_on_link(&self, mesh_torque: T) -> T {
+        let [from_sun, from_wind_up, from_rate] = self.table.to_link;
+        from_sun * mesh_torque + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up
     }
 
     /// Mean torque in the air gap over this period.

@@ -33,18 +33,21 @@
  *     joint_plant_start 1536
  *     joint_observer_load 1408
  *     joint_observer_step, joint_observer_save 1280
+ *     joint_plant_step_with_link 1152
  *     joint_wiring_verdicts 1024
  *     joint_observer_start, joint_observer_start_without_maps, joint_compensation_follow 896
  *     joint_compensation_yield 768
  *     joint_plant_step 704
- *     joint_wiring_step 576
+ *     joint_wiring_step, joint_plant_load 576
  *     joint_wiring_start 480
+ *     joint_plant_save 448
  *     joint_plant_outputs, joint_compensation_start 416
- *     joint_tables_facts 256
+ *     joint_tables_facts, joint_plant_shift 256
  *     joint_observer_estimates, joint_probe_start 208
  *     joint_plant_samples 160
  *     joint_plant_digest 96
  *     joint_probe_step 40
+ *     joint_plant_speeds 24
  *
  * One control period:
  *
@@ -125,6 +128,9 @@
 
 // Maximum number of planets of a plant.
 #define JOINT_MOST_PLANETS 5
+
+// 32-bit words of a plant's saved state.
+#define JOINT_PLANT_STATE_WORDS 32
 
 // Result of every function. Unless it is `JOINT_STATUS_OK`, nothing was changed.
 enum JointStatus
@@ -758,6 +764,31 @@ JointStatus joint_plant_step(struct JointPlant *plant,
                              float motor_torque_Nm,
                              float load_torque_Nm);
 
+// Advances by one control period with a link that another simulator moves. Its acceleration is the torque of the gears
+// times `link_inverse_inertia_per_kg_m2`, plus `link_acceleration_rad_per_s2`. `link_torque_Nm` receives the mean torque of
+// the gears on the link. Inertia, weight and friction of the link are the other simulator's; the tables' have no effect.
+JOINT_MUST_USE
+JointStatus joint_plant_step_with_link(struct JointPlant *plant,
+                                       float motor_torque_Nm,
+                                       float link_inverse_inertia_per_kg_m2,
+                                       float link_acceleration_rad_per_s2,
+                                       float *link_torque_Nm);
+
+// Turns the whole plant by an angle at the link, whole turns and a fraction, and changes the link's speed; the teeth keep
+// their deformations.
+JOINT_MUST_USE
+JointStatus joint_plant_shift(struct JointPlant *plant,
+                              int32_t turns,
+                              float fraction_turns,
+                              float speed_rad_per_s);
+
+// Copies the state of a plant, without addresses. `words` is JOINT_PLANT_STATE_WORDS.
+JOINT_MUST_USE JointStatus joint_plant_save(const struct JointPlant *plant, uint32_t *state, size_t words);
+
+// Continues from a saved state of a plant of the same joint, in this process or another. `words` is
+// JOINT_PLANT_STATE_WORDS. Equal states continue with equal bits.
+JOINT_MUST_USE JointStatus joint_plant_load(struct JointPlant *plant, const uint32_t *state, size_t words);
+
 // Present encoder readings, and the torque that was commanded last.
 JOINT_MUST_USE JointStatus joint_plant_samples(const struct JointPlant *plant, struct JointSamples *samples);
 
@@ -765,6 +796,12 @@ JOINT_MUST_USE JointStatus joint_plant_samples(const struct JointPlant *plant, s
 JOINT_MUST_USE
 JointStatus joint_plant_outputs(const struct JointPlant *plant,
                                 struct JointPlantOutputs *motion);
+
+// Present speeds of motor and link.
+JOINT_MUST_USE
+JointStatus joint_plant_speeds(const struct JointPlant *plant,
+                               float *motor_rad_per_s,
+                               float *link_rad_per_s);
 
 // Digest of every bit of the gears' state; equal digests mean equal runs so far.
 JOINT_MUST_USE JointStatus joint_plant_digest(const struct JointPlant *plant, uint64_t *digest);

@@ -139,6 +139,24 @@ class Plant : public Object<JointPlant> {
     [[nodiscard]] Status step(float motor_torque_Nm, float load_torque_Nm) noexcept {
         return joint_plant_step(get(), motor_torque_Nm, load_torque_Nm);
     }
+    /* With a link that another simulator moves; `link_torque_Nm` receives the mean torque of the gears on it. */
+    [[nodiscard]] Status step_with_link(float motor_torque_Nm, float link_inverse_inertia_per_kg_m2,
+                                        float link_acceleration_rad_per_s2, float &link_torque_Nm) noexcept {
+        return joint_plant_step_with_link(get(), motor_torque_Nm, link_inverse_inertia_per_kg_m2,
+                                          link_acceleration_rad_per_s2, &link_torque_Nm);
+    }
+    [[nodiscard]] Status shift(std::int32_t turns, float fraction_turns, float speed_rad_per_s) noexcept {
+        return joint_plant_shift(get(), turns, fraction_turns, speed_rad_per_s);
+    }
+    [[nodiscard]] Status save(std::array<std::uint32_t, JOINT_PLANT_STATE_WORDS> &state) const noexcept {
+        return joint_plant_save(get(), state.data(), state.size());
+    }
+    [[nodiscard]] Status load(const std::array<std::uint32_t, JOINT_PLANT_STATE_WORDS> &state) noexcept {
+        return joint_plant_load(get(), state.data(), state.size());
+    }
+    [[nodiscard]] Status speeds(float &motor_rad_per_s, float &link_rad_per_s) const noexcept {
+        return joint_plant_speeds(get(), &motor_rad_per_s, &link_rad_per_s);
+    }
     [[nodiscard]] Status samples(Samples &samples) const noexcept { return joint_plant_samples(get(), &samples); }
     [[nodiscard]] Status outputs(JointPlantOutputs &outputs) const noexcept { return joint_plant_outputs(get(), &outputs); }
     [[nodiscard]] Status digest(std::uint64_t &digest) const noexcept { return joint_plant_digest(get(), &digest); }

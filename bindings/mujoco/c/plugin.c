@@ -1,0 +1,368 @@
+/*
+ * A geared joint with backlash as an actuator of MuJoCo: current loop, rotor, gap, gears and compliance are stepped inside
+ * each step of MuJoCo; the link is MuJoCo's.
+ *
+ * Step, for the step size h of MuJoCo and the joint angle q and speed v at its start:
+ *
+ *     angle  = q - v h/2                                                  (1)
+ *     acc    = torque inverse_inertia + smooth + residual + correction    (2)
+ *     force  = mean of torque over the step                               (3)
+ *
+ * (1) MuJoCo adds the new speed to the angle: q is the angle half a step later than v. Corrected, both are of one time, and
+ * error and energy are of second order in h. (2) Acceleration of the link in every control period within the step, with
+ * the present torque of the gears; inverse_inertia = moment M^-1 moment^T is what the actuator sees, `smooth` the
+ * acceleration by passive, applied and bias forces. A link that is held over the step instead makes a stiff joint unstable.
+ * `residual` is the acceleration by other actuators, constraints and contacts: the smaller of the last two steps', and zero
+ * if their signs differ, so that an impact is not expected to come again. `correction` takes the link of the gears to the
+ * angle and speed of MuJoCo's within two steps: (1.5 speed error + angle error/h)/h.
+ *
+ * The state is in plugin_state only: saved and restored states continue with equal bits, in another process too.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <lostmotion/joint.h>
+#include <mujoco/mujoco.h>
+
+#include "description.h"
+
+/* Since MuJoCo 4 an actuator may have several controls and forces. */
+#ifdef ACTUATORS_HAVE_OUTPUTS
+#define ACTUATORS(model) (model)->nactuator
+#define CONTROL(model, actuator) (model)->actuator_ctrladr[actuator]
+#define OUTPUT(model, actuator) (model)->actuator_outadr[actuator]
+#else
+#define ACTUATORS(model) (model)->nu
+#define CONTROL(model, actuator) (actuator)
+#define OUTPUT(model, actuator) (actuator)
+#endif
+
+#define TURN_RAD 6.283185307179586
+/* Angle error beyond which the angle of the joint was set from outside, on top of what the speeds explain [rad]. */
+#define SET_RAD 1e-3
+/* Deviation of MuJoCo's step from whole control periods [periods]. */
+#define MOST_DEVIATION 1e-6
+
+/* Numbers in plugin_state: words of the plant, then: */
+enum {
+    STARTED = JOINT_PLANT_STATE_WORDS,
+    SPEED,     /* of the link at the last step [rad/s] */
+    PREDICTED, /* acceleration over the last step without residual [rad/s2] */
+    RESIDUALS, /* of the last two steps [rad/s2] */
+    TORQUE = RESIDUALS + 2, /* of the gears on the link, mean of the last step [N m] */
+    NUMBERS
+};
+
+/* Numbers of the sensor. */
+enum {
+    MOTOR_ANGLE,
+    MOTOR_SPEED,
+    LINK_ANGLE,
+    LINK_SPEED,
+    GAP,
+    CONTACT,
+    WIND_UP,
+    MOTOR_COUNTS,
+    OUTPUT_COUNTS,
+    MOTOR_TORQUE,
+    LINK_TORQUE,
+    SENSORS
+};
+
+typedef struct Instance {
+    JointPlant plant;
+    int actuator;
+    int dof;
+    int periods;
+    double h;
+    /* State after the present step, until MuJoCo asks for it. */
+    double next[NUMBERS];
+    int has_next;
+} Instance;
+
+static void check(JointStatus status, const char *name) {
+    if (status != JOINT_STATUS_OK) {
+        mju_error("%s: %s: %s", PLUGIN_NAME, name, joint_status_text(status));
+    }
+}
+
+/* Reason for which a model cannot be stepped, or NULL. */
+static const char *unfit(const mjModel *m, int *periods) {
+    const double wanted = (double)m->opt.timestep * CONTROL_RATE_HZ, whole = round(wanted);
+    if (m->opt.integrator == mjINT_RK4) {
+        return "integrator RK4 evaluates the joint at four times within a step, but steps its state once: choose Euler, "
+               "implicit or implicitfast";
+    }
+    if (m->opt.integrator != mjINT_EULER && m->opt.integrator != mjINT_IMPLICIT && m->opt.integrator != mjINT_IMPLICITFAST) {
+        return "the joint was not made for this integrator: choose Euler, implicit or implicitfast";
+    }
+    if (whole < 1.0 || whole > 1e5 || fabs(wanted - whole) > MOST_DEVIATION * whole) {
+        return "timestep is not a multiple of the joint's control period: change it, or export the joint with another --rate";
+    }
+    *periods = (int)whole;
+    return NULL;
+}
+
+/* The only actuator of an instance; -1 and a reason if there is no usable one. */
+static int actuator_of(const mjModel *m, int instance, const char **reason) {
+    int found = -1;
+    for (int i = 0; i < ACTUATORS(m); i++) {
+        if (m->actuator_plugin[i] != instance) {
+            continue;
+        }
+        if (found >= 0) {
+            *reason = "two actuators share an instance: give each an instance of its own";
+            return -1;
+        }
+        found = i;
+    }
+    if (found < 0) {
+        *reason = "no actuator uses this instance: name it in an actuator";
+    } else if (m->actuator_trntype[found] != mjTRN_JOINT || m->jnt_type[m->actuator_trnid[2 * found]] != mjJNT_HINGE) {
+        *reason = "the actuator does not drive a hinge: give it the attribute joint, with a joint of type hinge";
+        return -1;
+    } else if (m->actuator_gear[6 * OUTPUT(m, found)] != 1.0) {
+        *reason = "gear is not 1: the gear is in the plug-in; remove the attribute";
+        return -1;
+    }
+    return found;
+}
+
+static int state_numbers(const mjModel *m, int instance) {
+    (void)m, (void)instance;
+    return NUMBERS;
+}
+
+static int sensor_numbers(const mjModel *m, int instance, int sensor) {
+    (void)m, (void)instance, (void)sensor;
+    return SENSORS;
+}
+
+static int init(const mjModel *m, mjData *d, int instance) {
+    const char *reason = NULL;
+    int periods = 0;
+    const int actuator = actuator_of(m, instance, &reason);
+    Instance *own;
+    reason = reason != NULL ? reason : unfit(m, &periods);
+    if (reason != NULL) {
+        mju_warning("%s: %s", PLUGIN_NAME, reason);
+        return -1;
+    }
+    own = calloc(1, sizeof *own);
+    if (own == NULL) {
+        mju_warning("%s: no memory", PLUGIN_NAME);
+        return -1;
+    }
+    if (joint_plant_start(&own->plant, sizeof own->plant, tables, sizeof tables) != JOINT_STATUS_OK) {
+        mju_warning("%s: the tables in the plug-in are damaged: export it again", PLUGIN_NAME);
+        free(own);
+        return -1;
+    }
+    own->actuator = actuator;
+    own->dof = m->jnt_dofadr[m->actuator_trnid[2 * actuator]];
+    own->periods = periods;
+    own->h = (double)m->opt.timestep;
+    d->plugin_data[instance] = (uintptr_t)own;
+    return 0;
+}
+
+static void destroy(mjData *d, int instance) {
+    free((void *)d->plugin_data[instance]);
+    d->plugin_data[instance] = 0;
+}
+
+static void reset(const mjModel *m, mjtNum *plugin_state, void *plugin_data, int instance) {
+    (void)m, (void)instance;
+    memset(plugin_state, 0, NUMBERS * sizeof *plugin_state);
+    if (plugin_data != NULL) {
+        ((Instance *)plugin_data)->has_next = 0;
+    }
+}
+
+/* Present motion of the plant. */
+typedef struct Motion {
+    JointPlantOutputs outputs;
+    double carrier_rad;
+    double link_rad;
+    double link_speed;
+    double motor_speed;
+} Motion;
+
+static Motion motion_of(const Instance *own) {
+    Motion motion;
+    float motor = 0.0f, link = 0.0f;
+    check(joint_plant_outputs(&own->plant, &motion.outputs), "joint_plant_outputs");
+    check(joint_plant_speeds(&own->plant, &motor, &link), "joint_plant_speeds");
+    motion.carrier_rad = ((double)motion.outputs.carrier_turns + (double)motion.outputs.carrier_fraction / 4294967296.0) * TURN_RAD;
+    motion.link_rad = motion.carrier_rad + (double)motion.outputs.link_offset_rad;
+    motion.link_speed = (double)link;
+    motion.motor_speed = (double)motor;
+    return motion;
+}
+
+/* Turns the whole joint; the teeth keep their deformations. */
+static void shift(Instance *own, double angle_rad, double speed) {
+    const double turns = angle_rad / TURN_RAD;
+    const int32_t whole = (int32_t)turns;
+    check(joint_plant_shift(&own->plant, whole, (float)(turns - (double)whole), (float)speed), "joint_plant_shift");
+}
+
+/* State of the joint at the start of a step. */
+static Motion begin(const mjModel *m, const mjData *d, Instance *own, const mjtNum *state, double angle, double speed) {
+    Motion motion;
+    (void)m, (void)d;
+    if (state[STARTED] == 0.0) {
+        check(joint_plant_start(&own->plant, sizeof own->plant, tables, sizeof tables), "joint_plant_start");
+        shift(own, angle, speed);
+        return motion_of(own);
+    } else {
+        uint32_t words[JOINT_PLANT_STATE_WORDS];
+        double error, explained;
+        for (int i = 0; i < JOINT_PLANT_STATE_WORDS; i++) {
+            words[i] = (uint32_t)state[i];
+        }
+        check(joint_plant_load(&own->plant, words, JOINT_PLANT_STATE_WORDS), "joint_plant_load");
+        motion = motion_of(own);
+        error = angle - motion.link_rad;
+        explained = own->h * (fabs(speed - motion.link_speed) + fabs(speed)) + SET_RAD;
+        if (fabs(error) > explained) {
+            /* The angle was set from outside: the whole joint goes there, at the speed that was set with it. */
+            shift(own, error, speed - motion.link_speed);
+            motion = motion_of(own);
+        }
+        return motion;
+    }
+}
+
+static double smaller(double first, double second) {
+    return first * second <= 0.0 ? 0.0 : fabs(first) < fabs(second) ? first : second;
+}
+
+static void actuate(const mjModel *m, mjData *d, Instance *own, const mjtNum *state) {
+    const int output = OUTPUT(m, own->actuator);
+    const double speed = (double)d->actuator_velocity[output], h = own->h;
+    const double angle = (double)d->actuator_length[output] - 0.5 * h * speed;
+    const Motion start = begin(m, d, own, state, angle, speed);
+    const double angle_error = angle - start.link_rad, speed_error = speed - start.link_speed;
+    const int was_started = state[STARTED] != 0.0;
+    double inverse_inertia, smooth, residual, acceleration, sum = 0.0, mean;
+    uint32_t words[JOINT_PLANT_STATE_WORDS];
+    mjtNum *right, *solved;
+    mj_markStack(d);
+    right = mj_stackAllocNum(d, 2 * (size_t)m->nv);
+    solved = mj_stackAllocNum(d, 2 * (size_t)m->nv);
+    for (int i = 0; i < m->nv; i++) {
+        right[i] = i == own->dof ? 1.0 : 0.0;
+        right[m->nv + i] = d->qfrc_passive[i] + d->qfrc_applied[i] - d->qfrc_bias[i];
+    }
+    mj_solveM(m, d, solved, right, 2);
+    inverse_inertia = (double)solved[own->dof];
+    smooth = (double)solved[m->nv + own->dof];
+    mj_freeStack(d);
+
+    memcpy(&own->next[RESIDUALS], &state[RESIDUALS], 2 * sizeof own->next[0]);
+    if (was_started) {
+        own->next[RESIDUALS + 1] = own->next[RESIDUALS];
+        own->next[RESIDUALS] = (speed - state[SPEED]) / h - state[PREDICTED];
+    }
+    residual = smaller(own->next[RESIDUALS], own->next[RESIDUALS + 1]);
+    acceleration = smooth + residual + (1.5 * speed_error + angle_error / h) / h;
+    for (int period = 0; period < own->periods; period++) {
+        float torque = 0.0f;
+        check(joint_plant_step_with_link(&own->plant, (float)d->ctrl[CONTROL(m, own->actuator)], (float)inverse_inertia,
+                                         (float)acceleration, &torque),
+              "joint_plant_step_with_link");
+        sum += (double)torque;
+    }
+    mean = sum / own->periods;
+    d->actuator_force[output] = mean;
+
+    check(joint_plant_save(&own->plant, words, JOINT_PLANT_STATE_WORDS), "joint_plant_save");
+    for (int i = 0; i < JOINT_PLANT_STATE_WORDS; i++) {
+        own->next[i] = (double)words[i];
+    }
+    own->next[STARTED] = 1.0;
+    own->next[SPEED] = speed;
+    own->next[PREDICTED] = mean * inverse_inertia + smooth;
+    own->next[TORQUE] = mean;
+    own->has_next = 1;
+}
+
+/* Side of the sun's meshes: 1 on the drive side, -1 on the back side, 0 in the gap. */
+static double contact_of(const JointPlantOutputs *outputs) {
+    double side = 0.0;
+    for (uint32_t planet = 0; planet < outputs->planets; planet++) {
+        const JointContact contact = outputs->sun_contacts[planet];
+        side = contact == JOINT_CONTACT_DRIVE_SIDE ? 1.0 : contact == JOINT_CONTACT_BACK_SIDE && side == 0.0 ? -1.0 : side;
+    }
+    return side;
+}
+
+static void sense(const mjModel *m, mjData *d, Instance *own, const mjtNum *state, int instance) {
+    const int output = OUTPUT(m, own->actuator);
+    const double speed = (double)d->actuator_velocity[output];
+    const Motion motion = begin(m, d, own, state, (double)d->actuator_length[output] - 0.5 * own->h * speed, speed);
+    JointSamples samples;
+    check(joint_plant_samples(&own->plant, &samples), "joint_plant_samples");
+    for (int i = 0; i < m->nsensor; i++) {
+        mjtNum *const values = d->sensordata + m->sensor_adr[i];
+        if (m->sensor_type[i] != mjSENS_PLUGIN || m->sensor_plugin[i] != instance) {
+            continue;
+        }
+        values[MOTOR_ANGLE] = RATIO * motion.carrier_rad + (double)motion.outputs.motor_offset_rad;
+        values[MOTOR_SPEED] = motion.motor_speed;
+        values[LINK_ANGLE] = motion.link_rad;
+        values[LINK_SPEED] = motion.link_speed;
+        values[GAP] = (double)motion.outputs.gap_m;
+        values[CONTACT] = contact_of(&motion.outputs);
+        values[WIND_UP] = (double)motion.outputs.wind_up_m;
+        values[MOTOR_COUNTS] = (double)samples.motor.counts;
+        values[OUTPUT_COUNTS] = (double)samples.output.counts;
+        values[MOTOR_TORQUE] = (double)motion.outputs.air_gap_torque_Nm;
+        values[LINK_TORQUE] = state[TORQUE];
+    }
+}
+
+static void compute(const mjModel *m, mjData *d, int instance, int capability) {
+    Instance *const own = (Instance *)d->plugin_data[instance];
+    const mjtNum *const state = d->plugin_state + m->plugin_stateadr[instance];
+    /* The model's options may have been changed since the start. */
+    const char *const reason = unfit(m, &own->periods);
+    if (reason != NULL) {
+        mju_error("%s: %s", PLUGIN_NAME, reason);
+    }
+    own->h = (double)m->opt.timestep;
+    if (capability == mjPLUGIN_ACTUATOR) {
+        actuate(m, d, own, state);
+    } else {
+        sense(m, d, own, state, instance);
+    }
+}
+
+static void advance(const mjModel *m, mjData *d, int instance) {
+    Instance *const own = (Instance *)d->plugin_data[instance];
+    mjtNum *const state = d->plugin_state + m->plugin_stateadr[instance];
+    if (own->has_next != 0) {
+        for (int i = 0; i < NUMBERS; i++) {
+            state[i] = own->next[i];
+        }
+        own->has_next = 0;
+    }
+}
+
+__attribute__((constructor)) static void register_plugin(void) {
+    mjpPlugin plugin;
+    mjp_defaultPlugin(&plugin);
+    plugin.name = PLUGIN_NAME;
+    plugin.capabilityflags = mjPLUGIN_ACTUATOR | mjPLUGIN_SENSOR;
+    plugin.needstage = mjSTAGE_VEL;
+    plugin.nstate = state_numbers;
+    plugin.nsensordata = sensor_numbers;
+    plugin.init = init;
+    plugin.destroy = destroy;
+    plugin.reset = reset;
+    plugin.compute = compute;
+    plugin.advance = advance;
+    mjp_registerPlugin(&plugin);
+}

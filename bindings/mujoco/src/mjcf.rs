@@ -1,0 +1,81 @@
+//! A model in MuJoCo's format with the joint on a stand: its parts are what a user's model needs.
+
+use joint_file::JointFile;
+use model_core::gears::{Kinematics, Mechanics};
+use report::escape::escaped_xml;
+
+/// Acceleration of gravity in the model [m/s2].
+const GRAVITY: f64 = 9.81;
+
+/// Model of the joint with its link on a stand. Friction, weight and inertia of the link are MuJoCo's; without compliance the
+/// carrier is part of the link, as its armature.
+pub fn model(joint: &JointFile, plugin: &str, file: &str) -> String {
+    let (parameters, around) = (&joint.parameters, &joint.surroundings);
+    let inertia = parameters.link_inertia;
+    let weight = around.gravity_torque.abs();
+    // Half of the inertia comes from the distance of the weight, the other half from its extent.
+    let (mass, arm) = match weight > 0.0 {
+        true => (2.0 * (weight / GRAVITY).powi(2) / inertia, inertia * GRAVITY / (2.0 * weight)),
+        false => (1.0, 0.0),
+    };
+    let extent = if weight > 0.0 { 0.5 * inertia } else { inertia };
+    let sign = if around.gravity_torque < 0.0 { 1.0 } else { -1.0 };
+    let armature = match parameters.compliance {
+        Some(_) => 0.0,
+        None => {
+            let geometry = &parameters.geometry;
+            let planets = geometry.planets as f64 * parameters.bodies.planet_equivalent_mass;
+            (parameters.carrier_equivalent_mass() + planets) * geometry.carrier_base_radius().powi(2)
+        }
+    };
+    let friction = &around.load_friction;
+    TEMPLATE
+        .replace("@JOINT@", &escaped_xml(&parameters.name))
+        .replace("@PLUGIN@", plugin)
+        .replace("@FILE@", &escaped_xml(file))
+        .replace("@MASS@", &number(mass))
+        .replace("@OFFSET@", &number(sign * arm))
+        .replace("@INERTIA@", &number(extent))
+        .replace("@ARMATURE@", &number(armature))
+        .replace("@DAMPING@", &number(friction.viscous))
+        .replace("@FRICTION@", &number(friction.coulomb))
+        .replace("@LIMIT@", &number(around.torque_limit.min(1e6)))
+}
+
+/// Six significant digits suffice for every quantity of a joint file.
+fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    format!("{rounded}")
+}
+
+const TEMPLATE: &str = r#"<!-- @JOINT@ on a stand, with its gears and their backlash. Load @FILE@ first:
+     import mujoco; mujoco.mj_loadPluginLibrary("@FILE@"); model = mujoco.MjModel.from_xml_path(...)
+     For a model of your own, copy extension, actuator and sensor; one instance for each joint. -->
+<mujoco model="@JOINT@">
+  <option timestep="0.001" integrator="implicitfast"/>
+  <extension>
+    <plugin plugin="@PLUGIN@">
+      <instance name="joint"/>
+    </plugin>
+  </extension>
+  <worldbody>
+    <light pos="0 -1 2"/>
+    <geom type="box" size="0.06 0.06 0.06" pos="0 0.07 0" rgba="0.3 0.35 0.4 1" contype="0" conaffinity="0"/>
+    <body name="link">
+      <!-- Friction and inertia of the link; the armature is the carrier of gears without compliance. -->
+      <joint name="hinge" type="hinge" axis="0 1 0" damping="@DAMPING@" frictionloss="@FRICTION@" armature="@ARMATURE@"/>
+      <inertial pos="0 0 @OFFSET@" mass="@MASS@" diaginertia="@INERTIA@ @INERTIA@ @INERTIA@"/>
+      <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.02" rgba="0.9 0.5 0.2 1" contype="0" conaffinity="0"/>
+    </body>
+  </worldbody>
+  <actuator>
+    <!-- The control is the torque at the motor's shaft [N m]. -->
+    <plugin name="motor" joint="hinge" plugin="@PLUGIN@" instance="joint" ctrllimited="true" ctrlrange="-@LIMIT@ @LIMIT@"/>
+  </actuator>
+  <sensor>
+    <!-- Angle [rad] and speed [rad/s] of the motor, of the link; gap [m]; contact (1 drive side, -1 back side, 0 gap);
+         wind-up [m]; counts of motor and output encoder; torque in the air gap; torque of the gears on the link [N m]. -->
+    <plugin name="joint" plugin="@PLUGIN@" instance="joint"/>
+  </sensor>
+</mujoco>
+"#;

@@ -1,0 +1,236 @@
+"""Steps an exported joint in MuJoCo: wheels.py CHECK PLUGIN MODEL [...]; prints figures, fails on a difference in bits."""
+
+import os
+import pickle
+import re
+import subprocess
+import sys
+import time
+
+import mujoco
+import numpy as np
+
+MOTOR_ANGLE, MOTOR_SPEED, LINK_ANGLE, LINK_SPEED, GAP = 0, 1, 2, 3, 4
+WIND_UP, MOTOR_TORQUE, LINK_TORQUE = 6, 9, 10
+STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
+
+
+def load(text, timestep=None, integrator=None):
+    """Model with another step [s] or integrator."""
+    if timestep is not None:
+        text = re.sub(r'timestep="[^"]*"', f'timestep="{timestep}"', text)
+    if integrator is not None:
+        text = re.sub(r'integrator="[^"]*"', f'integrator="{integrator}"', text)
+    return mujoco.MjModel.from_xml_string(text)
+
+
+def state_of(model, data):
+    state = np.empty(mujoco.mj_stateSize(model, STATE))
+    mujoco.mj_getState(model, data, state, STATE)
+    return state
+
+
+def accuracy(text, reference):
+    """Errors against rows of: command, motor angle, link angle, gap, link speed; for each integrator and step."""
+    rows = np.loadtxt(reference, delimiter=",")
+    timestep = float(open(reference).readline().split()[1])
+    for integrator in ("Euler", "implicitfast", "implicit"):
+        model = load(text, timestep, integrator)
+        data = mujoco.MjData(model)
+        found = np.empty((len(rows), 3))
+        seen = np.empty(len(rows))
+        for row, values in enumerate(rows):
+            data.ctrl[0] = values[0]
+            seen[row] = data.qpos[0]
+            mujoco.mj_step(model, data)
+            found[row] = data.sensordata[[MOTOR_ANGLE, LINK_ANGLE, GAP]]
+        ranges = np.ptp(rows[:, 1:4], axis=0)
+        errors = np.abs(found - rows[:, 1:4]).max(axis=0) / ranges
+        mean = np.sqrt(np.mean((found - rows[:, 1:4]) ** 2, axis=0)) / ranges
+        qpos = np.abs(seen - rows[:, 2]).max() / ranges[1]
+        print(
+            f"accuracy {integrator} {timestep} link {errors[1]:.6f} motor {errors[0]:.6f} motor_rms {mean[0]:.6f} "
+            f"gap_rms {mean[2]:.6f} qpos {qpos:.6f}"
+        )
+
+
+def energy(text, rotor_inertia, link_inertia, stiffness):
+    """Largest growth of the energy of rotor, link and compliance after the torque has ended, over its largest value."""
+    for timestep in (0.0005, 0.001, 0.002):
+        model = load(text, timestep, "Euler")
+        data = mujoco.MjData(model)
+        energies = []
+        for step in range(int(3.0 / timestep)):
+            t = step * timestep
+            data.ctrl[0] = 0.8 * np.sign(np.sin(2 * np.pi * 6 * t)) if t < 0.5 else 0.0
+            mujoco.mj_step(model, data)
+            if t > 0.52:
+                motor, link, wind_up = data.sensordata[[MOTOR_SPEED, LINK_SPEED, WIND_UP]]
+                kinetic = 0.5 * rotor_inertia * motor**2 + 0.5 * link_inertia * link**2
+                energies.append(kinetic + 0.5 * stiffness * wind_up**2)
+        # The energy that the teeth store comes back: compare peaks of windows of 50 ms.
+        window = int(0.05 / timestep)
+        peaks = [max(energies[at : at + window]) for at in range(0, len(energies) - window, window)]
+        growth = max(later - earlier for earlier, later in zip(peaks, peaks[1:]))
+        print(f"energy {timestep} growth {growth / max(peaks):.6f} left {peaks[-1] / peaks[0]:.4f}")
+
+
+def chain(text, joints):
+    """Model of several arms of six joints, one instance each; without plug-in, the same with motors."""
+    plugin = re.search(r'plugin plugin="([^"]*)"', text).group(1)
+    instances = "".join(f'<instance name="i{n}"/>' for n in range(joints))
+    bodies, actuators, motors = "", "", ""
+    for n in range(joints):
+        if n % 6 == 0:
+            bodies += f'<body pos="0 {n / 6} 2">'
+        axis = "0 1 0" if n % 2 == 0 else "1 0 0"
+        bodies += (
+            f'<body pos="0 0 {-0.2 if n % 6 else 0}"><joint name="j{n}" axis="{axis}" damping="0.2"/>'
+            '<geom type="capsule" fromto="0 0 0 0 0 -0.2" size="0.03" mass="0.6" contype="0" conaffinity="0"/>'
+        )
+        if n % 6 == 5:
+            bodies += "</body>" * 7
+        actuators += f'<plugin name="a{n}" joint="j{n}" plugin="{plugin}" instance="i{n}"/>'
+        motors += f'<motor name="a{n}" joint="j{n}" gear="6"/>'
+    world = f'<option timestep="0.001" integrator="implicitfast"/><worldbody>{bodies}</worldbody>'
+    extension = f'<extension><plugin plugin="{plugin}">{instances}</plugin></extension>'
+    return (
+        f"<mujoco>{extension}{world}<actuator>{actuators}</actuator></mujoco>",
+        f"<mujoco>{world}<actuator>{motors}</actuator></mujoco>",
+    )
+
+
+def many(text):
+    """36 joints in a model: equal arms move equally, and the cost beside a model with plain motors."""
+    costs = []
+    for model in map(mujoco.MjModel.from_xml_string, chain(text, 36)):
+        data = mujoco.MjData(model)
+        for step in range(400):
+            data.ctrl[:] = np.tile(0.5 * np.sin(0.02 * step + np.arange(6)), 6)
+            mujoco.mj_step(model, data)
+        assert np.isfinite(data.qpos).all()
+        if not costs:
+            spread = np.ptp(data.qpos.reshape(6, 6), axis=0).max()
+        began = time.process_time()
+        for _ in range(1000):
+            mujoco.mj_step(model, data)
+        costs.append(time.process_time() - began)
+    print(f"many spread {spread:.3e} us_per_step {1e3 * costs[0]:.1f} {1e3 * costs[1]:.1f} ratio {costs[0] / costs[1]:.2f}")
+
+
+def drive(model, data, steps, first=0):
+    for step in range(first, first + steps):
+        data.ctrl[0] = np.sin(0.02 * step)
+        mujoco.mj_step(model, data)
+    return state_of(model, data)
+
+
+def resume(text, path):
+    """Continues in this process from a state that another process saved."""
+    model = load(text)
+    data = mujoco.MjData(model)
+    with open(path, "rb") as file:
+        saved, expected = pickle.load(file)
+    mujoco.mj_setState(model, data, saved, STATE)
+    assert (drive(model, data, 700, 500) == expected).all(), "another process continued with other bits"
+    print("resumed")
+
+
+def save(text, folder):
+    """Saved states continue with equal bits: in the same data, in other data, by threads, and in another process."""
+    model = load(text)
+    data = mujoco.MjData(model)
+    saved = drive(model, data, 500)
+    expected = drive(model, data, 700, 500)
+    for place in (data, mujoco.MjData(model)):
+        mujoco.mj_setState(model, place, saved, STATE)
+        # A look at forces without a step changes nothing.
+        mujoco.mj_forward(model, place)
+        mujoco.mj_forward(model, place)
+        assert (drive(model, place, 700, 500) == expected).all(), "a restored state continued with other bits"
+    other = mujoco.MjData(model)
+    mujoco.mj_setState(model, other, saved, STATE)
+    copied = mujoco.MjData(model)
+    mujoco.mj_copyData(copied, model, other) if hasattr(mujoco, "mj_copyData") else None
+    assert (drive(model, other, 700, 500) == expected).all()
+    mujoco.mj_resetData(model, data)
+    assert (drive(model, data, 500) == saved).all(), "a reset did not start anew"
+    from mujoco import rollout
+
+    controls = np.sin(0.02 * np.arange(500, 1200))[None, :, None].repeat(8, axis=0)
+    states, _ = rollout.rollout(model, [mujoco.MjData(model) for _ in range(2)], np.tile(saved, (8, 1)), controls)
+    assert (states[:, -1] == expected).all(), "threads continued with other bits"
+    path = os.path.join(folder, "state.pickle")
+    with open(path, "wb") as file:
+        pickle.dump((saved, expected), file)
+    sys.stdout.flush()
+    subprocess.run([sys.executable, __file__, "resume", *sys.argv[2:4], path], check=True)
+    print("saved")
+
+
+def refused(text):
+    """Models that cannot be stepped right are refused with the reason."""
+    plugin = re.search(r'plugin plugin="([^"]*)"', text).group(1)
+    cases = {
+        "RK4": load_error(text, integrator="RK4"),
+        "timestep": load_error(text, timestep=0.00015),
+        "hinge": load_error(text.replace('type="hinge"', 'type="slide"')),
+        "gear": load_error(text.replace('joint="hinge" plugin', 'joint="hinge" gear="2" plugin')),
+        "instance": load_error(
+            text.replace("</actuator>", f'<plugin name="second" joint="hinge" plugin="{plugin}" instance="joint"/></actuator>')
+        ),
+    }
+    for word, message in cases.items():
+        assert word in message, f"{word}: {message}"
+    model = load(text)
+    data = mujoco.MjData(model)
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    try:
+        mujoco.mj_step(model, data)
+        raise AssertionError("a change of the integrator was not seen")
+    except mujoco.FatalError as error:
+        assert "RK4" in str(error), error
+    print("refused")
+
+
+def load_error(text, **changes):
+    try:
+        mujoco.MjData(load(text, **changes))
+    except (ValueError, mujoco.FatalError) as error:
+        return str(error)
+    return "no error"
+
+
+def set_angle(text):
+    """An angle that is set from outside takes the whole joint along, without a shock."""
+    model = load(text)
+    data = mujoco.MjData(model)
+    for angle in (1.0, -2.5, 700.0):
+        mujoco.mj_resetData(model, data)
+        data.qpos[0] = angle
+        for _ in range(20):
+            mujoco.mj_step(model, data)
+        assert abs(data.sensordata[LINK_ANGLE] - data.qpos[0]) < 0.02, (angle, data.sensordata)
+        drive(model, data, 300)
+        data.qpos[0] += 0.5
+        mujoco.mj_step(model, data)
+        assert abs(data.actuator_force[0]) < 60.0, data.actuator_force
+    print("set")
+
+
+if __name__ == "__main__":
+    check, plugin, path, *rest = sys.argv[1:]
+    mujoco.mj_loadPluginLibrary(os.path.abspath(plugin))
+    with open(path) as file:
+        model_text = file.read()
+    checks = {"many": many, "refused": refused, "set": set_angle}
+    if check == "accuracy":
+        accuracy(model_text, rest[0])
+    elif check == "energy":
+        energy(model_text, *map(float, rest))
+    elif check == "save":
+        save(model_text, rest[0])
+    elif check == "resume":
+        resume(model_text, rest[0])
+    else:
+        checks[check](model_text)

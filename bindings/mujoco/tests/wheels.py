@@ -180,6 +180,8 @@ def refused(text):
             text.replace("</actuator>", f'<plugin name="second" joint="hinge" plugin="{plugin}" instance="joint"/></actuator>')
         ),
     }
+    limited = 'joint="hinge" forcelimited="true" forcerange="-1 1" plugin'
+    cases["forcerange"] = load_error(text.replace('joint="hinge" plugin', limited))
     for word, message in cases.items():
         assert word in message, f"{word}: {message}"
     model = load(text)
@@ -218,12 +220,26 @@ def set_angle(text):
     print("set")
 
 
+def limits(text):
+    """A command beyond its range is the range's end; one that is no number is zero, and ends nothing."""
+    text = re.sub(r'ctrlrange="[^"]*"', 'ctrlrange="-0.5 0.25"', text)
+    for command, expected in ((100.0, 0.25), (-100.0, -0.5), (np.nan, 0.0), (np.inf, 0.0)):
+        model = load(text)
+        data = mujoco.MjData(model)
+        for _ in range(20):
+            data.ctrl[0] = command
+            mujoco.mj_step(model, data)
+        found = data.sensordata[MOTOR_TORQUE]
+        assert abs(found - expected) < 0.05 * abs(expected) + 1e-6, (command, expected, found)
+    print("limits")
+
+
 if __name__ == "__main__":
     check, plugin, path, *rest = sys.argv[1:]
     mujoco.mj_loadPluginLibrary(os.path.abspath(plugin))
     with open(path) as file:
         model_text = file.read()
-    checks = {"many": many, "refused": refused, "set": set_angle}
+    checks = {"many": many, "refused": refused, "set": set_angle, "limits": limits}
     if check == "accuracy":
         accuracy(model_text, rest[0])
     elif check == "energy":

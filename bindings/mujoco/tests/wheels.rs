@@ -197,7 +197,7 @@ fn joint_gains_no_energy() {
     }
 }
 
-/// 36 joints in a model; saved states; refused models; angles that are set.
+/// 36 joints in a model; saved states; refused models; angles that are set; commands beyond their range.
 #[test]
 #[ignore = "installs 350 MB: cargo test -p mujoco-plugin -- --ignored"]
 fn models_save_refuse_and_scale() {
@@ -211,5 +211,6 @@ fn models_save_refuse_and_scale() {
         check(&python, "save", &files, &[folder.path().to_str().expect("a path")]);
         check(&python, "refused", &files, &[]);
         check(&python, "set", &files, &[]);
+        check(&python, "limits", &files, &[]);
     }
 }

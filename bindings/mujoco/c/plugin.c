@@ -214,9 +214,8 @@ static void shift(Instance *own, double angle_rad, double speed) {
 }
 
 /* State of the joint at the start of a step. */
-static Motion begin(const mjModel *m, const mjData *d, Instance *own, const mjtNum *state, double angle, double speed) {
+static Motion begin(Instance *own, const mjtNum *state, double angle, double speed) {
     Motion motion;
-    (void)m, (void)d;
     if (state[STARTED] == 0.0) {
         check(joint_plant_start(&own->plant, sizeof own->plant, tables, sizeof tables), "joint_plant_start");
         shift(own, angle, speed);
@@ -263,7 +262,7 @@ static void actuate(const mjModel *m, mjData *d, Instance *own, const mjtNum *st
     const int output = OUTPUT(m, own->actuator);
     const double speed = (double)d->actuator_velocity[output], h = own->h;
     const double angle = (double)d->actuator_length[output] - 0.5 * h * speed;
-    const Motion start = begin(m, d, own, state, angle, speed);
+    const Motion start = begin(own, state, angle, speed);
     const double angle_error = angle - start.link_rad, speed_error = speed - start.link_speed;
     const int was_started = state[STARTED] != 0.0;
     const float command = command_of(m, d, own->actuator);
@@ -323,7 +322,7 @@ static double contact_of(const JointPlantOutputs *outputs) {
 static void sense(const mjModel *m, mjData *d, Instance *own, const mjtNum *state, int instance) {
     const int output = OUTPUT(m, own->actuator);
     const double speed = (double)d->actuator_velocity[output];
-    const Motion motion = begin(m, d, own, state, (double)d->actuator_length[output] - 0.5 * own->h * speed, speed);
+    const Motion motion = begin(own, state, (double)d->actuator_length[output] - 0.5 * own->h * speed, speed);
     JointSamples samples;
     check(joint_plant_samples(&own->plant, &samples), "joint_plant_samples");
     for (int i = 0; i < m->nsensor; i++) {

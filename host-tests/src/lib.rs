@@ -1,4 +1,6 @@
-//! Tolerances of all tests, each with its reason, and the extent of long tests. The tests are in `tests/`.
+//! Tolerances of all tests, each with its reason, the extent of long tests, and packages of other languages for tests. The
+//! tests are in `tests/`.
 
 pub mod extent;
+pub mod packages;
 pub mod tolerance;

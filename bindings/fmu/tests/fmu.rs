@@ -12,6 +12,7 @@ use fmu::archive::{self, File};
 use fmu::export::contents;
 use fmu::model::{Content, Fmi, Model};
 use fmu::variables::{Kind, Role};
+use host_tests::packages::{self, succeeded};
 use model_core::compensation::{Command as Demand, Compensation, ImpedancePoint, Motion, Position};
 use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
@@ -462,34 +463,12 @@ fn all_digests<const N: usize>(
     ]
 }
 
-/// Python with the packages of `fmpy.txt`, below the build directory.
-fn python() -> std::path::PathBuf {
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmpy");
-    let python = place.join("bin/python");
-    let pinned = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmpy.txt");
-    let installed = place.join("installed.txt");
-    if fs::read(&installed).ok() != fs::read(&pinned).ok() {
-        succeeded(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&place));
-        let mut install = Command::new(&python);
-        install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--requirement"]).arg(&pinned);
-        succeeded(&mut install);
-        fs::copy(&pinned, &installed).expect("room");
-    }
-    python
-}
-
-/// Output of a process that must succeed.
-fn succeeded(command: &mut Command) -> String {
-    let ended = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    let [out, said] = [&ended.stdout, &ended.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    assert!(ended.status.success(), "{command:?}:\n{out}{said}");
-    out
-}
-
 /// FMPy finds no problem, simulates, repeats a saved state, holds 1,000 instances, and reads the core's bits.
 #[test]
 #[ignore = "installs 90 MB: cargo test -p fmu -- --ignored"]
 fn fmpy_reads_the_core_bits() {
+    let (lists, all) = (Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"), Path::new(env!("CARGO_TARGET_TMPDIR")));
+    let python = packages::python(all, &lists, "fmpy");
     let q1 = joint("q1");
     let folder = tempfile::tempdir().expect("a folder");
     for (fmi, version) in [(Fmi::Two, "2"), (Fmi::Three, "3")] {
@@ -501,7 +480,7 @@ fn fmpy_reads_the_core_bits() {
             path
         });
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmpy_importer.py");
-        let said = succeeded(Command::new(python()).arg(script).arg(version).args(&paths));
+        let said = succeeded(Command::new(&python).arg(script).arg(version).args(&paths));
         println!("{said}");
         let blob = Blob::open(&models[0].tables.words).expect("tables");
         let (Gears::Three(gears), around) = blob.plant().expect("a plant") else { panic!("Q1 has three planets") };

@@ -31,10 +31,12 @@
 #ifdef ACTUATORS_HAVE_OUTPUTS
 #define ACTUATORS(model) (model)->nactuator
 #define CONTROL(model, actuator) (model)->actuator_ctrladr[actuator]
+#define LIMITS(control, actuator) (control)
 #define OUTPUT(model, actuator) (model)->actuator_outadr[actuator]
 #else
 #define ACTUATORS(model) (model)->nu
 #define CONTROL(model, actuator) (actuator)
+#define LIMITS(control, actuator) (actuator)
 #define OUTPUT(model, actuator) (actuator)
 #endif
 
@@ -125,6 +127,9 @@ static int actuator_of(const mjModel *m, int instance, const char **reason) {
     } else if (m->actuator_gear[6 * OUTPUT(m, found)] != 1.0) {
         *reason = "gear is not 1: the gear is in the plug-in; remove the attribute";
         return -1;
+    } else if (m->actuator_forcelimited[found] != 0) {
+        *reason = "forcerange would cut the torque of the gears: remove it, and limit the motor's torque by ctrlrange";
+        return -1;
     }
     return found;
 }
@@ -209,9 +214,8 @@ static void shift(Instance *own, double angle_rad, double speed) {
 }
 
 /* State of the joint at the start of a step. */
-static Motion begin(const mjModel *m, const mjData *d, Instance *own, const mjtNum *state, double angle, double speed) {
+static Motion begin(Instance *own, const mjtNum *state, double angle, double speed) {
     Motion motion;
-    (void)m, (void)d;
     if (state[STARTED] == 0.0) {
         check(joint_plant_start(&own->plant, sizeof own->plant, tables, sizeof tables), "joint_plant_start");
         shift(own, angle, speed);
@@ -239,13 +243,29 @@ static double smaller(double first, double second) {
     return first * second <= 0.0 ? 0.0 : fabs(first) < fabs(second) ? first : second;
 }
 
+/* Torque command within its range; like MuJoCo, a command that is no number is zero. */
+static float command_of(const mjModel *m, const mjData *d, int actuator) {
+    const int control = CONTROL(m, actuator);
+    double value = (double)d->ctrl[control];
+    if (!isfinite(value)) {
+        return 0.0f;
+    }
+    if (m->actuator_ctrllimited[LIMITS(control, actuator)] != 0) {
+        const mjtNum *const range = m->actuator_ctrlrange + 2 * LIMITS(control, actuator);
+        value = value < (double)range[0] ? (double)range[0] : value > (double)range[1] ? (double)range[1] : value;
+    }
+    /* Beyond it the current loop limits the torque anyway. */
+    return (float)(value > 1e9 ? 1e9 : value < -1e9 ? -1e9 : value);
+}
+
 static void actuate(const mjModel *m, mjData *d, Instance *own, const mjtNum *state) {
     const int output = OUTPUT(m, own->actuator);
     const double speed = (double)d->actuator_velocity[output], h = own->h;
     const double angle = (double)d->actuator_length[output] - 0.5 * h * speed;
-    const Motion start = begin(m, d, own, state, angle, speed);
+    const Motion start = begin(own, state, angle, speed);
     const double angle_error = angle - start.link_rad, speed_error = speed - start.link_speed;
     const int was_started = state[STARTED] != 0.0;
+    const float command = command_of(m, d, own->actuator);
     double inverse_inertia, smooth, residual, acceleration, sum = 0.0, mean;
     uint32_t words[JOINT_PLANT_STATE_WORDS];
     mjtNum *right, *solved;
@@ -270,7 +290,7 @@ static void actuate(const mjModel *m, mjData *d, Instance *own, const mjtNum *st
     acceleration = smooth + residual + (1.5 * speed_error + angle_error / h) / h;
     for (int period = 0; period < own->periods; period++) {
         float torque = 0.0f;
-        check(joint_plant_step_with_link(&own->plant, (float)d->ctrl[CONTROL(m, own->actuator)], (float)inverse_inertia,
+        check(joint_plant_step_with_link(&own->plant, command, (float)inverse_inertia,
                                          (float)acceleration, &torque),
               "joint_plant_step_with_link");
         sum += (double)torque;
@@ -302,7 +322,7 @@ static double contact_of(const JointPlantOutputs *outputs) {
 static void sense(const mjModel *m, mjData *d, Instance *own, const mjtNum *state, int instance) {
     const int output = OUTPUT(m, own->actuator);
     const double speed = (double)d->actuator_velocity[output];
-    const Motion motion = begin(m, d, own, state, (double)d->actuator_length[output] - 0.5 * own->h * speed, speed);
+    const Motion motion = begin(own, state, (double)d->actuator_length[output] - 0.5 * own->h * speed, speed);
     JointSamples samples;
     check(joint_plant_samples(&own->plant, &samples), "joint_plant_samples");
     for (int i = 0; i < m->nsensor; i++) {

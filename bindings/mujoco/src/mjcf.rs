@@ -6,12 +6,14 @@ use report::escape::escaped_xml;
 
 /// Acceleration of gravity in the model [m/s2].
 const GRAVITY: f64 = 9.81;
+/// Inertia of a link that has none in the joint file [kg m2]: MuJoCo needs one.
+const LEAST_INERTIA: f64 = 1e-6;
 
 /// Model of the joint with its link on a stand. Friction, weight and inertia of the link are MuJoCo's; without compliance the
 /// carrier is part of the link, as its armature.
 pub fn model(joint: &JointFile, plugin: &str, file: &str) -> String {
     let (parameters, around) = (&joint.parameters, &joint.surroundings);
-    let inertia = parameters.link_inertia;
+    let inertia = parameters.link_inertia.max(LEAST_INERTIA);
     let weight = around.gravity_torque.abs();
     // Half of the inertia comes from the distance of the weight, the other half from its extent.
     let (mass, arm) = match weight > 0.0 {
@@ -32,7 +34,8 @@ pub fn model(joint: &JointFile, plugin: &str, file: &str) -> String {
     TEMPLATE
         .replace("@JOINT@", &escaped_xml(&parameters.name))
         .replace("@PLUGIN@", plugin)
-        .replace("@FILE@", &escaped_xml(file))
+        // Two hyphens would end a comment.
+        .replace("@FILE@", &escaped_xml(file).replace("--", "-&#45;"))
         .replace("@MASS@", &number(mass))
         .replace("@OFFSET@", &number(sign * arm))
         .replace("@INERTIA@", &number(extent))
@@ -48,7 +51,7 @@ fn number(value: f64) -> String {
     format!("{rounded}")
 }
 
-const TEMPLATE: &str = r#"<!-- @JOINT@ on a stand, with its gears and their backlash. Load @FILE@ first:
+const TEMPLATE: &str = r#"<!-- A joint on a stand, with its gears and their backlash. Load @FILE@ first:
      import mujoco; mujoco.mj_loadPluginLibrary("@FILE@"); model = mujoco.MjModel.from_xml_path(...)
      For a model of your own, copy extension, actuator and sensor; one instance for each joint. -->
 <mujoco model="@JOINT@">
@@ -79,3 +82,39 @@ const TEMPLATE: &str = r#"<!-- @JOINT@ on a stand, with its gears and their back
   </sensor>
 </mujoco>
 "#;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn q1() -> JointFile {
+        joint_file::read(joint_file::preset("q1").unwrap()).unwrap()
+    }
+
+    /// Text of an attribute of the model.
+    fn attribute(model: &str, name: &str) -> String {
+        let (_, rest) = model.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split('"').next().unwrap().to_owned()
+    }
+
+    #[test]
+    fn link_has_inertia_and_weight_of_the_joint() {
+        let (joint, model) = (q1(), model(&q1(), "lostmotion.q1", "q1.so"));
+        let number = |name: &str| attribute(&model, name).split(' ').next_back().unwrap().parse::<f64>().unwrap();
+        let (mass, extent) = (number("mass"), number("diaginertia"));
+        let inertial = model.split_once("<inertial").unwrap().1;
+        let arm: f64 = attribute(inertial, "pos").split(' ').next_back().unwrap().parse().unwrap();
+        assert!((mass * arm * arm + extent - joint.parameters.link_inertia).abs() < 1e-6);
+        assert!((mass * GRAVITY * -arm - joint.surroundings.gravity_torque).abs() < 1e-4);
+    }
+
+    #[test]
+    fn odd_names_and_links_without_inertia_give_a_sound_model() {
+        let mut joint = q1();
+        joint.parameters.link_inertia = 0.0;
+        let model = model(&joint, "lostmotion.q1", "a--b<c>.so");
+        let comment = model.split_once("<!--").unwrap().1.split_once("-->").unwrap().0;
+        assert!(!comment.contains("--") && !comment.contains('<'), "{comment}");
+        assert!(!model.contains("inf") && !model.contains("NaN"), "{model}");
+    }
+}

@@ -1,5 +1,6 @@
 """Steps an exported joint in MuJoCo: wheels.py CHECK PLUGIN MODEL [...]; prints figures, fails on a difference in bits."""
 
+import copy
 import os
 import pickle
 import re
@@ -150,9 +151,9 @@ def save(text, folder):
         assert (drive(model, place, 700, 500) == expected).all(), "a restored state continued with other bits"
     other = mujoco.MjData(model)
     mujoco.mj_setState(model, other, saved, STATE)
-    copied = mujoco.MjData(model)
-    mujoco.mj_copyData(copied, model, other) if hasattr(mujoco, "mj_copyData") else None
-    assert (drive(model, other, 700, 500) == expected).all()
+    copied = copy.copy(other)
+    for place in (other, copied):
+        assert (drive(model, place, 700, 500) == expected).all(), "a copy continued with other bits"
     mujoco.mj_resetData(model, data)
     assert (drive(model, data, 500) == saved).all(), "a reset did not start anew"
     from mujoco import rollout
@@ -180,6 +181,8 @@ def refused(text):
             text.replace("</actuator>", f'<plugin name="second" joint="hinge" plugin="{plugin}" instance="joint"/></actuator>')
         ),
     }
+    limited = 'joint="hinge" forcelimited="true" forcerange="-1 1" plugin'
+    cases["forcerange"] = load_error(text.replace('joint="hinge" plugin', limited))
     for word, message in cases.items():
         assert word in message, f"{word}: {message}"
     model = load(text)
@@ -218,12 +221,26 @@ def set_angle(text):
     print("set")
 
 
+def limits(text):
+    """A command beyond its range is the range's end; one that is no number is zero, and ends nothing."""
+    text = re.sub(r'ctrlrange="[^"]*"', 'ctrlrange="-0.5 0.25"', text)
+    for command, expected in ((100.0, 0.25), (-100.0, -0.5), (np.nan, 0.0), (np.inf, 0.0)):
+        model = load(text)
+        data = mujoco.MjData(model)
+        for _ in range(20):
+            data.ctrl[0] = command
+            mujoco.mj_step(model, data)
+        found = data.sensordata[MOTOR_TORQUE]
+        assert abs(found - expected) < 0.05 * abs(expected) + 1e-6, (command, expected, found)
+    print("limits")
+
+
 if __name__ == "__main__":
     check, plugin, path, *rest = sys.argv[1:]
     mujoco.mj_loadPluginLibrary(os.path.abspath(plugin))
     with open(path) as file:
         model_text = file.read()
-    checks = {"many": many, "refused": refused, "set": set_angle}
+    checks = {"many": many, "refused": refused, "set": set_angle, "limits": limits}
     if check == "accuracy":
         accuracy(model_text, rest[0])
     elif check == "energy":

@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 
 use board::device::board::Board;
 use c_library::library::{self, Library, Target};
+use host_tests::packages::{self, succeeded};
 use joint_file::JointFile;
 use model_core::gears::{Kinematics, Mechanics};
 use mujoco_plugin::export;
@@ -88,26 +89,8 @@ fn reference_rows(file: &JointFile, step: f64) -> String {
 
 /// Python with the packages of a list, below the build directory.
 fn environment(list: &str) -> PathBuf {
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join(list);
-    let python = place.join("bin/python");
-    let pinned = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(format!("{list}.txt"));
-    let installed = place.join("installed.txt");
-    if fs::read(&installed).ok() != fs::read(&pinned).ok() {
-        succeeded(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&place));
-        let mut install = Command::new(&python);
-        install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--requirement"]).arg(&pinned);
-        succeeded(&mut install);
-        fs::copy(&pinned, &installed).expect("room");
-    }
-    python
-}
-
-/// Output of a process that must succeed.
-fn succeeded(command: &mut Command) -> String {
-    let ended = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    let [out, said] = [&ended.stdout, &ended.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    assert!(ended.status.success(), "{command:?}:\n{out}{said}");
-    out
+    let lists = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    packages::python(Path::new(env!("CARGO_TARGET_TMPDIR")), &lists, list)
 }
 
 /// Plug-in and model of a joint for the package of an environment; the link is that of another file.
@@ -124,7 +107,9 @@ fn exported(folder: &Path, file: &JointFile, link: &JointFile, python: &Path) ->
 
 fn check(python: &Path, name: &str, files: &[PathBuf; 2], arguments: &[&str]) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wheels.py");
-    let said = succeeded(Command::new(python).arg(script).arg(name).args(files).args(arguments));
+    // MuJoCo writes its log into the folder in which it runs.
+    let folder = files[0].parent().expect("a folder");
+    let said = succeeded(Command::new(python).current_dir(folder).arg(script).arg(name).args(files).args(arguments));
     println!("{said}");
     said
 }
@@ -197,7 +182,7 @@ fn joint_gains_no_energy() {
     }
 }
 
-/// 36 joints in a model; saved states; refused models; angles that are set.
+/// 36 joints in a model; saved states; refused models; angles that are set; commands beyond their range.
 #[test]
 #[ignore = "installs 350 MB: cargo test -p mujoco-plugin -- --ignored"]
 fn models_save_refuse_and_scale() {
@@ -211,5 +196,6 @@ fn models_save_refuse_and_scale() {
         check(&python, "save", &files, &[folder.path().to_str().expect("a path")]);
         check(&python, "refused", &files, &[]);
         check(&python, "set", &files, &[]);
+        check(&python, "limits", &files, &[]);
     }
 }

@@ -17,21 +17,9 @@ pub fn place(kind: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(kind)
 }
 
-/// Folder `name` of a kind with the packages of a list. `install` fills it if the list changed or if `part` of it is
-/// missing.
+/// Folder `name` of a kind with the packages of a list, as `host_tests::packages::packages`.
 pub fn packages(kind: &str, name: &str, list: &Path, part: &str, install: impl FnOnce(&Path)) -> PathBuf {
-    let (all, folder) = (place(kind), place(kind).join(name));
-    fs::create_dir_all(&folder).expect("the build directory is writable");
-    // One installation at a time, across the threads and processes that share the folder.
-    let lock = File::create(all.join("lock")).expect("the build directory is writable");
-    lock.lock().expect("a lock on a file of ours");
-    let wanted = fs::read(list).expect("a list of pinned packages");
-    let stamp = folder.join("installed.txt");
-    if !fs::read(&stamp).is_ok_and(|installed| installed == wanted) || !folder.join(part).exists() {
-        install(&folder);
-        fs::write(&stamp, wanted).expect("the build directory is writable");
-    }
-    folder
+    host_tests::packages::packages(&place(kind), name, list, part, install)
 }
 
 /// Runs a command that prepares packages; panics with the needs of the tests if it fails.

@@ -3,8 +3,8 @@
 //! run again, and a killed worker loses its task only.
 //!
 //! `list` defines tasks, `folder` keeps them with their results and runs those that are left: on this machine, through
-//! `dask` on the workers of a scheduler, or later by the job script of `slurm`. `program` identifies the program, `package` is a
-//! result with files.
+//! `dask` on the workers of a scheduler, or later by the job script of `slurm`. `program` identifies the program,
+//! `package` is a result with files.
 
 mod dask;
 mod digest;

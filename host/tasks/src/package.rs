@@ -34,8 +34,11 @@ pub fn pack<R: Serialize>(record: &R, folder: &Path, names: Vec<String>) -> Outc
     Ok(packed)
 }
 
-/// Record and files of a package, by name; `None` for other bytes.
-pub fn unpack<R: DeserializeOwned>(packed: &[u8]) -> Option<(R, Vec<(String, Vec<u8>)>)> {
+/// A file of a package: name and bytes.
+pub type PackedFile = (String, Vec<u8>);
+
+/// Record and files of a package; `None` for other bytes.
+pub fn unpack<R: DeserializeOwned>(packed: &[u8]) -> Option<(R, Vec<PackedFile>)> {
     let end = packed.iter().position(|byte| *byte == b'\n')?;
     let Head { record, files } = serde_json::from_slice::<Head<R>>(&packed[..end]).ok()?;
     let mut rest = &packed[end + 1..];

@@ -111,6 +111,7 @@ pub fn run_tests(
             json: None,
             junit: None,
             live: live::PacedLiveOptions::default(),
+            tasks: None,
         };
         let progress = Progress::new();
         let outcome = scenario::run(&request, &progress);

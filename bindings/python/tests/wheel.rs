@@ -1,5 +1,5 @@
 //! The Python wheel, built as for a release, installed on a machine without Rust and driven by Python: the module, the
-//! command, the notebook, and the bits of the core. In release this test shares its build with the wheel.
+//! command, the notebook, and the bits of the core.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -15,9 +15,10 @@ use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
 use model_core::observer::{MAPPED, Observer};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+use release::parts::{Builds, build_folder, wheel};
+use release::source::Source;
+use report::workspace::workspace;
 
-/// Version of maturin that the wheel is built with.
-const MATURIN: &str = "maturin==1.16.0";
 /// Packages of the tests, with pytest and what runs a notebook.
 const PACKAGES: [&str; 8] = [
     "numpy==2.4.6",
@@ -133,23 +134,22 @@ const PATH_WITHOUT_RUST: &str = "/none";
 
 /// The wheel installs within a minute and does in a folder without sources what its tests say.
 #[test]
-#[ignore = "builds and installs the wheel: cargo test --release -p python-bindings -- --ignored --nocapture"]
+#[ignore = "builds and installs the wheel: cargo test -p python-bindings -- --ignored --nocapture"]
 fn wheel_passes_its_tests_without_rust() {
     let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wheel");
     fs::create_dir_all(&place).expect("the build directory is writable");
     let bits = place.join("bits.json");
     fs::write(&bits, expected_bits()).expect("a file");
-    let wheels = place.join("wheels");
-    let _ = fs::remove_dir_all(&wheels);
-    let tools = environment(&place.join("tools"), &[MATURIN, AUDITWHEEL]);
+    let tools = environment(&place.join("tools"), &[AUDITWHEEL]);
     let begin = Instant::now();
-    let build = ["-m", "maturin", "build", "--release", "--locked", "--out"];
-    println!("{}", succeeded(Command::new(&tools).args(build).arg(&wheels).current_dir(bindings())));
+    let source = Source::of_commit(&workspace()).expect("a clone");
+    let say = |line: &str| println!("{line}");
+    let file = wheel(&Builds { source: &source, folder: &build_folder(), say: &say }).expect("a wheel");
     println!("build: {:.0} s", begin.elapsed().as_secs_f64());
-    let wheel = fs::read_dir(&wheels).expect("a folder").next().expect("a wheel").expect("a file").path();
-    let size = wheel.metadata().expect("a file").len();
-    let name = wheel.file_name().expect("a name").to_string_lossy().into_owned();
+    let (name, size) = (file.path, file.bytes.len());
     println!("{name}: {size} B");
+    let wheel = place.join(&name);
+    fs::write(&wheel, file.bytes).expect("a file");
     assert!(name.contains("-cp310-abi3-manylinux"), "{name}");
     println!("{}", succeeded(Command::new(&tools).args(["-m", "auditwheel", "show"]).arg(&wheel)));
 

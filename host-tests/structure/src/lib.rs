@@ -1,7 +1,7 @@
 //! Structure of the workspace, read from its sources and from Cargo; `tests/workspace.rs` states the rules.
 //!
 //! [`imports`] finds cycles between the folders of a crate, [`members`] checks imports between crates, [`page`] compares
-//! them with the tables in ARCHITECTURE.md, [`size`] counts lines. [`links`] follows the links of the Markdown pages,
+//! them with the tables in ARCHITECTURE.md, [`drawing`] draws them, [`size`] counts lines. [`links`] follows the links of the Markdown pages,
 //! [`equations`] compares numbered equations of docs/theory with the code, [`unsafe_code`] compares every `unsafe` with its
 //! list, [`dependencies`] checks third-party packages, [`features`] checks that builds share packages. [`cargo`] asks Cargo.
 //!
@@ -9,6 +9,7 @@
 
 pub mod cargo;
 pub mod dependencies;
+pub mod drawing;
 pub mod equations;
 pub mod features;
 pub mod imports;

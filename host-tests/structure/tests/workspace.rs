@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use structure::imports::{Imports, Sources};
 use structure::members::{Member, Workspace};
-use structure::{dependencies, equations, features, links, page, size, unsafe_code};
+use structure::{dependencies, drawing, equations, features, links, page, size, unsafe_code};
 
 static WORKSPACE: LazyLock<Workspace> = LazyLock::new(|| Workspace::read(&root()));
 /// Rust files of the members with their texts, whatever target each belongs to.
@@ -113,6 +113,24 @@ fn default_members_import_no_research() {
 fn crates_import_as_the_page_allows() {
     let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap_or_default();
     assert_no_findings(page::differences(&text, &WORKSPACE, |path| root().join(path).exists()));
+}
+
+/// The drawing in ARCHITECTURE.md shows the present imports; `UPDATE_DRAWING=1` writes it.
+#[test]
+fn drawing_shows_present_imports() {
+    let runs_on_board = |name: &str| {
+        let member = WORKSPACE.member(name).expect("a crate");
+        let without_std =
+            |root: &PathBuf| SOURCES[root].lines().any(|line| line.starts_with("#![") && line.contains("no_std"));
+        member.targets.iter().filter(|(kind, _)| kind != "custom-build").any(|(_, root)| without_std(root))
+    };
+    let drawn = drawing::svg(&WORKSPACE, runs_on_board);
+    let path = root().join("docs/architecture-crates.svg");
+    if std::env::var_os("UPDATE_DRAWING").is_some() {
+        std::fs::write(&path, &drawn).expect("room");
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(found == drawn, "draw it anew: UPDATE_DRAWING=1 cargo test -p structure drawing");
 }
 
 /// ARCHITECTURE.md and CONTRIBUTING.md name existing paths only.

@@ -1,7 +1,6 @@
 //! `joint library`: header, library, files for build systems, costs and a test program, as one archive.
 
 use std::fs;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use board::device::Say;
@@ -14,6 +13,7 @@ use report::workspace::workspace;
 
 use crate::library::{self, Library, SONAME, Target};
 use crate::programs;
+use crate::tarball::{self, Entry};
 use crate::{build_files, costs, run, tables};
 
 /// Patterns of the written files.
@@ -76,28 +76,9 @@ pub fn prefix(target: Target) -> String {
 
 /// Packs the archive; equal libraries give equal bytes.
 pub fn archive(library: &Library, say: Say<'_>) -> Outcome<Vec<u8>> {
-    let mut builder = tar::Builder::new(Vec::new());
-    let new_header = |entry: tar::EntryType, bytes: &[u8]| {
-        let mut header = tar::Header::new_ustar();
-        header.set_size(bytes.len() as u64);
-        header.set_mode(0o644);
-        header.set_mtime(0);
-        header.set_entry_type(entry);
-        header
-    };
-    let path = |name: &str| format!("{}/{name}", prefix(library.target));
-    let pack_failure = |name: &str, error| Failure::new(format!("cannot pack {name}: {error}"));
-    for (name, bytes) in contents(library, say)? {
-        let mut header = new_header(tar::EntryType::Regular, &bytes);
-        let packed = builder.append_data(&mut header, path(&name), Cursor::new(bytes));
-        packed.map_err(|error| pack_failure(&name, error))?;
-    }
-    if library.shared.is_some() {
-        let mut header = new_header(tar::EntryType::Symlink, &[]);
-        let packed = builder.append_link(&mut header, path(LINKED_NAME), SONAME);
-        packed.map_err(|error| pack_failure(LINKED_NAME, error))?;
-    }
-    builder.into_inner().map_err(|error| Failure::new(format!("cannot pack the library: {error}")))
+    let files = contents(library, say)?.into_iter().map(|(name, bytes)| (name, Entry::File(bytes)));
+    let link = library.shared.iter().map(|_| (LINKED_NAME.to_owned(), Entry::Link(SONAME)));
+    tarball::pack(&prefix(library.target), files.chain(link).collect())
 }
 
 /// Names and contents of all files, in the order of the archive.

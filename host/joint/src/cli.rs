@@ -8,10 +8,11 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use board::device::packages::{self, Install};
 use report::failure::Outcome;
 use report::{command_line, output};
+use tasks::program;
 
 use crate::{
     board as board_files, budget, check, completions, export, flash, hil, identify, image, library, memory, merge, new,
-    replay, research, sim, sweep, tables, twin,
+    replay, research, sim, sweep, tables, task, twin,
 };
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
@@ -42,9 +43,12 @@ enum Command {
     Paper(research::Arguments),
     /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
     Sim(sim::Arguments),
-    /// Simulate every joint of a grid in parallel: resumable, in shards for job arrays
+    /// Simulate every joint of a grid in tasks: on all cores, on Dask workers or in a SLURM array
     Sweep(sweep::Arguments),
-    /// Merge the shards of a sweep into one result; all shards must be complete
+    /// Run one task of a sweep or of tests, as a worker of a cluster does
+    Task(task::Arguments),
+    /// Removed command of older versions
+    #[command(hide = true)]
     Merge(merge::Arguments),
     /// Put joints behind drives on a bus of this machine, for clients of finished drives: CAN or serial
     Twin(twin::Arguments),
@@ -66,6 +70,8 @@ enum Command {
     Library(library::Arguments),
     /// Write a joint as a co-simulation unit (FMU) for other simulators: plant, or observer and compensation
     Export(export::Arguments),
+    /// Build everything that users are given: wheel, command, C archives, images, book, digests, SBOM
+    Release(research::Arguments),
     /// Print a completion script for a shell: bash, zsh, fish and others
     Completions(completions::Arguments),
 }
@@ -82,6 +88,7 @@ pub fn run(arguments: &[OsString]) -> u8 {
 
 fn run_subcommand(cli: &Cli) -> Outcome<()> {
     packages::set_decision(cli.install);
+    program::set_version(env!("JOINT_VERSION"));
     match &cli.command {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
@@ -92,6 +99,7 @@ fn run_subcommand(cli: &Cli) -> Outcome<()> {
         Some(Command::Paper(arguments)) => research::run("paper", &arguments.rest),
         Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
+        Some(Command::Task(arguments)) => task::run(arguments),
         Some(Command::Merge(arguments)) => merge::run(arguments),
         Some(Command::Twin(arguments)) => twin::run(arguments),
         Some(Command::Identify(arguments)) => identify::run(arguments),
@@ -103,6 +111,7 @@ fn run_subcommand(cli: &Cli) -> Outcome<()> {
         Some(Command::Tables(arguments)) => tables::run(arguments),
         Some(Command::Library(arguments)) => library::run(arguments),
         Some(Command::Export(arguments)) => export::run(arguments),
+        Some(Command::Release(arguments)) => research::run("release", &arguments.rest),
         Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
     }
 }

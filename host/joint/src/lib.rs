@@ -20,6 +20,7 @@ mod research;
 mod sim;
 mod sweep;
 mod tables;
+mod task;
 mod twin;
 
 pub use cli::{main, run};

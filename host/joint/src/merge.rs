@@ -1,23 +1,20 @@
-//! `joint merge`: merges the shards of a sweep into one result, once all are complete.
+//! `joint merge` of older versions merged the shards of a sweep; it only names its successor.
 
-use std::path::PathBuf;
+use std::ffi::OsString;
 
-use report::failure::Outcome;
-use report::output;
-use simulation::sweep;
+use report::failure::{Failure, Outcome};
 
-/// Arguments of `joint merge`.
+/// Arguments of `joint merge`, of any kind.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Arguments {
-    /// Folders that hold shards of one sweep
-    #[arg(value_name = "DIR", required = true)]
-    pub folders: Vec<PathBuf>,
-    /// Folder for the result [default: the first of the folders]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Arguments of the older version
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    rest: Vec<OsString>,
 }
 
-/// Merges shards and prints the path of the result.
-pub fn run(arguments: &Arguments) -> Outcome<()> {
-    output::print(&sweep::merge(&arguments.folders, arguments.out.as_deref())?)
+/// Refuses the command with its successor.
+pub fn run(_: &Arguments) -> Outcome<()> {
+    Err(Failure::new("joint merge was removed: a sweep has no shards, its tasks lie in one folder").with_help(
+        "run the sweep's own command again: it collects the results of all tasks, whichever engine ran them",
+    ))
 }

@@ -1,4 +1,4 @@
-//! `joint paper` and `joint bench`: programs of the folder `research`, built on demand. They are started through cargo
+//! `joint paper`, `joint bench` and `joint release`: programs of their own, built on demand. They are started through cargo
 //! with the rest of the command line, in the user's folder.
 
 use std::ffi::OsString;
@@ -20,7 +20,7 @@ pub struct Arguments {
     pub rest: Vec<OsString>,
 }
 
-/// Builds and runs a program of the folder `research`; ends with the program's exit code.
+/// Builds and runs a program of the workspace; ends with the program's exit code.
 pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
     require_sources(&format!("the program `{package}`"))?;
     // Ctrl-C reaches the program as well, which ends in order; this process waits for it.

@@ -60,7 +60,7 @@ fn unreadable_file_is_named_by_every_command() {
         &["identify", "log.csv", "--joint", "@", "--out", out],
         &["memory", "show", "@"],
         &["memory", "write", "@"],
-        &["merge", "@", "--out", out],
+        &["task", "@", "--number", "0"],
     ];
     for input in unreadable_files(inputs.path()) {
         for command in commands {

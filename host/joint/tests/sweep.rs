@@ -1,5 +1,5 @@
-//! `joint sweep` and `joint merge` at the command line: equal bytes for any threads, shards, kills and order; foreign
-//! files stay untouched; every error has its cause and remedy.
+//! `joint sweep` at the command line: equal bytes for any threads, engines, kills and order; foreign files stay
+//! untouched; every error has its cause and remedy.
 
 mod command;
 
@@ -26,16 +26,22 @@ fn whole(folder: &Path) -> String {
     result(&path)
 }
 
-fn journal(folder: &Path) -> PathBuf {
-    folder.join("journal-1-of-1.csv")
+/// Folder of the tasks.
+fn tasks(folder: &Path) -> PathBuf {
+    folder.join("tasks")
 }
 
-fn lines(path: &Path) -> usize {
-    fs::read(path).map_or(0, |bytes| bytes.iter().filter(|byte| **byte == b'\n').count())
+/// Results of the tasks in a sweep's folder.
+fn results(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(tasks(folder)).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "result"));
+    paths.sort();
+    paths
 }
 
 #[test]
-fn threads_and_shards_give_equal_bytes() {
+fn threads_and_engines_give_equal_bytes() {
     let folder = folder();
     let expected = whole(folder.path());
     assert_eq!(expected.lines().count(), 32);
@@ -44,36 +50,103 @@ fn threads_and_shards_give_equal_bytes() {
         sweep(&["--threads", threads], &path).succeeded();
         assert_eq!(result(&path), expected, "{threads} threads");
     }
-    // Shards in one folder, the last one first; the shard that completes the grid writes the result.
-    let together = folder.path().join("together");
-    for shard in ["3/3", "1/3"] {
-        let ended = sweep(&["--shard", shard], &together).succeeded();
-        assert!(ended.out.contains("cargo joint merge"), "{ended:?}");
-        assert!(!together.join("points.csv").exists());
+    // The elements of a job array each run one task, in any order and on any machine; the sweep collects them.
+    let path = folder.path().join("array");
+    let ended = sweep(&["--slurm"], &path).succeeded();
+    assert!(ended.out.contains("31 tasks are left") && ended.out.contains("sbatch "), "{ended:?}");
+    assert!(results(&path).is_empty() && !path.join("points.csv").exists());
+    let script = fs::read_to_string(tasks(&path).join("slurm.sh")).expect("a script");
+    assert!(script.contains("#SBATCH --array=0-30\n"), "{script}");
+    for number in (0..31).rev().filter(|number| *number != 7) {
+        joint(&["task", text(&tasks(&path)), "--number", &number.to_string()]).succeeded();
     }
-    sweep(&["--shard", "2/3"], &together).succeeded();
-    assert_eq!(result(&together), expected);
+    // The script names the tasks that are left.
+    sweep(&["--slurm"], &path).succeeded();
+    let script = fs::read_to_string(tasks(&path).join("slurm.sh")).expect("a script");
+    assert!(script.contains("#SBATCH --array=7\n"), "{script}");
+    let ended = sweep(&[], &path).succeeded();
+    assert!(ended.err.contains("continuing: 30 of 31 tasks"), "{ended:?}");
+    assert_eq!(result(&path), expected);
+}
+
+/// The job script runs as it stands; here a shell is the array's element. A program that is killed runs again.
+#[test]
+fn slurm_script_runs_its_task() {
+    let folder = folder();
+    let expected = whole(folder.path());
+    let path = folder.path().join("of the array");
+    sweep(&["--slurm"], &path).succeeded();
+    let script = tasks(&path).join("slurm.sh");
+    for number in 0..31 {
+        let mut shell = std::process::Command::new("sh");
+        let ended = shell.arg(&script).env("SLURM_ARRAY_TASK_ID", number.to_string()).output().expect("a shell");
+        assert!(ended.status.success(), "{ended:?}");
+    }
+    assert_eq!(results(&path).len(), 31);
+    let ended = sweep(&["--slurm"], &path).succeeded();
+    assert!(ended.out.contains("every task has a result"), "{ended:?}");
+    sweep(&[], &path).succeeded();
+    assert_eq!(result(&path), expected);
+}
+
+/// A task computes the points from its list alone: a torque profile may be gone by then.
+#[test]
+fn task_needs_no_file_beside_its_list() {
+    let folder = folder();
+    let profile = folder.path().join("profile.csv");
+    let rows = "time_s,motor_torque_Nm,load_torque_Nm\n0,0.5,2\n0.02,-0.5,-2\n";
+    fs::write(&profile, rows).expect("room");
+    let grid = ["sweep", "q1", "--vary", "half_backlash_um=20,30", "--duration", "0.05", "--profile", text(&profile)];
+    let (one, other) = (folder.path().join("one"), folder.path().join("other"));
+    joint(&[&grid[..], &["--out", text(&one)]].concat()).succeeded();
+    joint(&[&grid[..], &["--slurm", "--out", text(&other)]].concat()).succeeded();
+    fs::remove_file(&profile).expect("there");
+    let elsewhere = folder.path().join("elsewhere");
+    fs::create_dir(&elsewhere).expect("room");
+    fs::copy(tasks(&other).join("list.json"), elsewhere.join("list.json")).expect("room");
+    for number in ["0", "1"] {
+        joint(&["task", text(&elsewhere), "--number", number]).succeeded();
+    }
+    assert_eq!(results(&one).len(), 2);
+    for path in results(&one) {
+        let name = path.file_name().expect("a name");
+        assert_eq!(fs::read(elsewhere.join(name)).expect("a result"), fs::read(&path).expect("a result"));
+    }
 }
 
 #[test]
-fn merge_needs_all_shards() {
+fn removed_options_name_successor() {
     let folder = folder();
-    let expected = whole(folder.path());
-    let paths = ["1/3", "2/3", "3/3"].map(|shard| {
-        let path = folder.path().join(shard.replace('/', "-of-"));
-        sweep(&["--shard", shard], &path).succeeded();
-        path
-    });
-    let [one, two, three] = paths.each_ref().map(text);
-    let out = folder.path().join("merged");
-    joint(&["merge", one, three, "--out", text(&out)])
-        .refused(&["10 of 31 points are missing: 1, 4, 7", "--shard 2/3"]);
-    assert!(!out.exists());
-    joint(&["merge", three, one, two, "--out", text(&out)]).succeeded();
-    assert_eq!(result(&out), expected);
-    // Merging again does no harm.
-    joint(&["merge", one, two, three, "--out", text(&out)]).succeeded();
-    assert_eq!(result(&out), expected);
+    let path = folder.path().join("old");
+    sweep(&["--shard", "3/16"], &path).refused(&["--shard 3/16 was removed", "--slurm", "--dask"]);
+    assert!(!path.exists());
+    joint(&["merge", "node-1", "node-2", "--out", "all"])
+        .refused(&["joint merge was removed", "the sweep's own command"]);
+    sweep(&["--slurm", "--dask", "tcp://127.0.0.1:1"], &path).refused(&["cannot be used with"]);
+    // The folder of a version with journals.
+    sweep(&[], &path).succeeded();
+    fs::write(path.join("journal-1-of-2.csv"), "joint-sweep,0\n").expect("room");
+    let before = contents(&path);
+    sweep(&[], &path).refused(&["journals of an older version", "journal-1-of-2.csv", "points.csv stays valid"]);
+    assert_eq!(contents(&path), before);
+}
+
+#[test]
+fn bad_task_names_remedy() {
+    let folder = folder();
+    let path = folder.path().join("sweep");
+    sweep(&[], &path).succeeded();
+    let task = |folder: &Path, number: &str| joint(&["task", text(folder), "--number", number]);
+    task(&tasks(&path), "31").refused(&["no task 31", "its 31 tasks are numbered from 0"]);
+    task(&path, "0").refused(&["cannot read the list of tasks", "--slurm"]);
+    let list = tasks(&path).join("list.json");
+    let whole = fs::read_to_string(&list).expect("a list");
+    fs::write(&list, whole.replacen("0:150:5", "0:150:6", 1)).expect("room");
+    task(&tasks(&path), "0").refused(&["an input does not have its digest", "run the command again"]);
+    // The sweep writes its list anew and keeps the results.
+    let ended = sweep(&[], &path).succeeded();
+    assert!(ended.err.contains("continuing: 31 of 31"), "{ended:?}");
+    assert_eq!(fs::read_to_string(&list).expect("a list"), whole);
 }
 
 #[test]
@@ -103,11 +176,11 @@ fn killed_sweep_resumes_to_equal_bytes() {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     for wanted in [5, 60] {
         let mut child = start(&arguments);
-        until("some points are kept", || lines(&journal(&path)) > wanted);
+        until("some points are kept", || results(&path).len() > wanted);
         child.kill().expect("it runs");
         wait(child);
     }
-    let kept = lines(&journal(&path)) - 1;
+    let kept = results(&path).len();
     assert!((60..301).contains(&kept), "{kept}");
     assert!(!path.join("points.csv").exists());
     let ended = joint(&arguments).succeeded();
@@ -116,16 +189,19 @@ fn killed_sweep_resumes_to_equal_bytes() {
 }
 
 #[test]
-fn truncated_journal_line_recomputed() {
+fn damaged_result_recomputed() {
     let folder = folder();
     let expected = whole(folder.path());
     let path = folder.path().join("whole");
-    let bytes = fs::read(journal(&path)).expect("a journal");
-    for cut in [bytes.len() - 1, bytes.len() - 30, bytes.len() / 2, 40, 0] {
-        fs::write(journal(&path), &bytes[..cut]).expect("room");
+    let file = results(&path).pop().expect("a result");
+    let bytes = fs::read(&file).expect("a result");
+    let altered = String::from_utf8_lossy(&bytes).replace(",ok,", ",diverged,").into_bytes();
+    for spoilt in [&bytes[..bytes.len() - 1], &bytes[..bytes.len() / 2], &bytes[..0], &altered] {
+        fs::write(&file, spoilt).expect("room");
         fs::remove_file(path.join("points.csv")).expect("it was there");
         sweep(&[], &path).succeeded();
-        assert_eq!(result(&path), expected, "cut at {cut}");
+        assert_eq!(result(&path), expected);
+        assert_eq!(fs::read(&file).expect("a result"), bytes);
     }
 }
 
@@ -135,30 +211,31 @@ fn ctrl_c_keeps_points_names_command() {
     let path = folder.path().join("stopped");
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0:150:0.05", "--out", text(&path)];
     let child = start(&grid);
-    until("some points are kept", || lines(&journal(&path)) > 3);
+    until("some points are kept", || results(&path).len() > 3);
     interrupt(&child);
     let ended = wait(child);
     assert_eq!(ended.code, Some(130), "{ended:?}");
     for word in
-        ["stopped by the user", "of 3001 points are left", "cargo joint sweep paper --vary half_backlash_um=0:150:0.05"]
+        ["stopped by the user", "of 751 tasks are left", "cargo joint sweep paper --vary half_backlash_um=0:150:0.05"]
     {
         assert!(ended.err.contains(word), "{word}: {ended:?}");
     }
-    assert!(lines(&journal(&path)) > 3);
+    assert!(results(&path).len() > 3);
 }
 
 #[test]
 fn full_disk_keeps_finished_points() {
     let folder = folder();
-    // The limit has room for the description of the sweep, but not for the journal of 151 points.
+    // The limit has room for the results of the tasks, but not for the result of 151 points.
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0:150:1", "--duration", "0.003", "--threads", "1"];
     let (expected, path) = (folder.path().join("whole"), folder.path().join("full"));
     joint(&[&grid[..], &["--out", text(&expected)]].concat()).succeeded();
     let arguments = [&grid[..], &["--out", text(&path)]].concat();
-    joint_on_a_full_disk(12, &arguments).refused(&["cannot write", "free some space", "points of this run are kept"]);
-    assert!(lines(&journal(&path)) > 20 && !path.join("points.csv").exists());
-    let ended = joint(&arguments).succeeded();
-    assert!(ended.err.contains("continuing:"), "{ended:?}");
+    let size = fs::metadata(tasks(&expected).join("list.json")).expect("a list").len();
+    let limit = u32::try_from(size / 1024).expect("small");
+    joint_on_a_full_disk(limit, &arguments).refused(&["cannot write", "list.json", "free some space"]);
+    assert!(results(&path).is_empty() && !path.join("points.csv").exists());
+    joint(&arguments).succeeded();
     assert_eq!(result(&path), result(&expected));
 }
 
@@ -190,8 +267,6 @@ fn impossible_grid_writes_nothing() {
     refused(&["half_backlash_um"], &["no `=`"]);
     let all = ["sweep", "paper", "--vary", "half_backlash_um=1,2", "--scheme", "all", "--out", text(&path)];
     joint(&all).refused(&["one scheme"]);
-    let shard = ["sweep", "paper", "--vary", "half_backlash_um=1,2", "--shard", "5/4", "--out", text(&path)];
-    joint(&shard).refused(&["5/4"]);
     joint(&["sweep", "/no/such.toml", "--vary", "half_backlash_um=1,2"]).refused(&["/no/such.toml"]);
     assert!(!path.exists());
 }
@@ -201,8 +276,7 @@ fn foreign_folder_rejected_unchanged() {
     let folder = folder();
     let path = folder.path().join("mine");
     fs::create_dir(&path).expect("room");
-    for (name, words) in [("thesis.txt", "thesis.txt"), ("points.csv", "points.csv"), ("journal-1-of-1.csv", "journal")]
-    {
+    for (name, words) in [("thesis.txt", "thesis.txt"), ("points.csv", "points.csv"), ("tasks", "tasks")] {
         fs::write(path.join(name), "my data").expect("room");
         let before = contents(&path);
         sweep(&[], &path).refused(&["not a sweep's", words, "nothing was written"]);
@@ -214,8 +288,6 @@ fn foreign_folder_rejected_unchanged() {
     fs::write(path.join("notes.txt"), "my data").expect("room");
     let before = contents(&path);
     sweep(&[], &path).refused(&["beside its sweep", "notes.txt"]);
-    assert_eq!(contents(&path), before);
-    joint(&["merge", text(&path)]).refused(&["beside its sweep", "notes.txt"]);
     assert_eq!(contents(&path), before);
     // A file in place of the folder.
     let file = folder.path().join("file");
@@ -242,10 +314,6 @@ fn folder_of_other_sweep_rejected() {
     other(&[&GRID[..], &["--scheme", "rk4"]].concat(), &["another sweep", "scheme"]);
     other(&[&GRID[..], &["--set", "mesh.damping_ratio=0.06"]].concat(), &["another sweep", "joint file"]);
     other(&[&GRID[..], &["--metric", "period"]].concat(), &["another sweep", "metrics"]);
-    // Shards of two sweeps do not merge.
-    let second = folder.path().join("second");
-    joint(&[&GRID[..], &["--scheme", "rk4", "--out", text(&second)]].concat()).succeeded();
-    joint(&["merge", text(&path), text(&second)]).refused(&["another sweep than", "scheme"]);
 }
 
 #[test]
@@ -258,17 +326,9 @@ fn damaged_sweep_rejected_unchanged() {
         fs::write(path.join("sweep.json"), &spoilt).expect("room");
         let before = contents(&path);
         sweep(&[], &path).refused(&["sweep.json is not a sweep's manifest"]);
-        joint(&["merge", text(&path)]).refused(&["sweep.json is not a sweep's manifest"]);
         assert_eq!(contents(&path), before);
     }
     fs::write(path.join("sweep.json"), &manifest).expect("room");
-    fs::write(journal(&path), "time,torque\n1,2\n").expect("room");
-    let before = contents(&path);
-    sweep(&[], &path).refused(&["is not the journal of a sweep"]);
-    joint(&["merge", text(&path)]).refused(&["is not the journal of a sweep"]);
-    assert_eq!(contents(&path), before);
-    joint(&["merge", text(folder.path())]).refused(&["is not a sweep"]);
-    joint(&["merge", "/no/such/folder"]).refused(&["/no/such/folder is not a folder"]);
 }
 
 #[test]
@@ -286,23 +346,21 @@ fn impossible_point_is_one_refused_row() {
 }
 
 #[test]
-fn sweep_report_equal_from_shards() {
+fn sweep_report_equal_from_tasks() {
     let folder = folder();
     let page = |path: &Path| fs::read_to_string(path.join("report.html")).expect("a page");
     let whole = folder.path().join("whole");
     let ended = sweep(&[], &whole).succeeded();
     assert!(ended.out.contains("report: "), "{ended:?}");
     assert!(page(&whole).contains("Greatest mesh force") && page(&whole).contains("mesh.half_backlash_um"));
-    // Shards, and a second run into the same folder, give equal bytes.
-    let paths = ["1/2", "2/2"].map(|shard| {
-        let path = folder.path().join(shard.replace('/', "-of-"));
-        sweep(&["--shard", shard], &path).succeeded();
-        assert!(!path.join("report.html").exists(), "not before all points are there");
-        path
+    // Tasks of an array, and a second run into the same folder, give equal bytes.
+    let out = folder.path().join("array");
+    sweep(&["--slurm"], &out).succeeded();
+    (0..31).for_each(|number| {
+        joint(&["task", text(&tasks(&out)), "--number", &number.to_string()]).succeeded();
     });
-    let [one, two] = paths.each_ref().map(text);
-    let out = folder.path().join("merged");
-    joint(&["merge", one, two, "--out", text(&out)]).succeeded();
+    assert!(!out.join("report.html").exists(), "not before the results are collected");
+    sweep(&[], &out).succeeded();
     assert_eq!(page(&out), page(&whole));
     sweep(&[], &whole).succeeded();
     assert_eq!(page(&out), page(&whole));

@@ -458,3 +458,61 @@ fn wrong_page_line_is_located_and_updated() {
     let missing = right.replace("took [...] s\n", "");
     assert!(followed(&missing).page.contains("length_m = 1\ntook 7 s\n"), "{:?}", followed(&missing));
 }
+
+/// Files of an output folder: the record without dates and times on the clock, logs, memories.
+fn lasting(out: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut record = json(&out.join("record.json"));
+    let parts = |record: &mut Value| ["date", "seconds"].map(|key| record.as_object_mut().expect("a map").remove(key));
+    parts(&mut record);
+    record["tests"].as_array_mut().expect("tests").iter_mut().for_each(|test| {
+        parts(test);
+    });
+    let mut files = command::contents(&out.join("runs"));
+    files.push(("record.json".to_owned(), record.to_string().into_bytes()));
+    files
+}
+
+/// Seeds run as tasks give the record, the logs and the memories of one process, and no task runs twice.
+#[test]
+fn tasks_give_record_of_one_process() {
+    let folder = folder();
+    let file = test_file(folder.path(), "profile = \"T2\"\n[controller]\nrivals = [\"motor_pid\"]");
+    let [one, other] = ["one", "other"].map(|name| folder.path().join(name));
+    let hil = |out: &Path, options: &[&str]| {
+        joint(&[&["hil", text(&file), "--host", "--seed", "1-3", "--memory", "--out", text(out)], options].concat())
+    };
+    hil(&one, &[]).succeeded();
+    let ended = hil(&other, &["--slurm"]).succeeded();
+    assert!(ended.out.contains("3 tasks are left") && ended.out.contains("--resume"), "{ended:?}");
+    assert!(!other.join("record.json").exists());
+    // The list is enough to run a task elsewhere.
+    let place = folder.path().join("elsewhere");
+    fs::create_dir(&place).expect("room");
+    fs::copy(other.join("tasks/list.json"), place.join("list.json")).expect("room");
+    let names = |place: &Path| command::contents(place).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+    for number in ["0", "2"] {
+        joint(&["task", text(&place), "--number", number]).succeeded();
+    }
+    let results: Vec<String> = names(&place).into_iter().filter(|name| name.ends_with(".result")).collect();
+    assert_eq!(results.len(), 2, "{results:?}");
+    for name in results {
+        fs::copy(place.join(&name), other.join("tasks").join(&name)).expect("room");
+    }
+    let ended = hil(&other, &["--resume"]).succeeded();
+    assert!(ended.err.contains("continuing: 2 of 3 tasks"), "{ended:?}");
+    assert_eq!(lasting(&other), lasting(&one));
+    let ended = hil(&other, &["--resume"]).succeeded();
+    assert!(ended.err.contains("continuing: 3 of 3 tasks"), "{ended:?}");
+    assert_eq!(lasting(&other), lasting(&one));
+}
+
+#[test]
+fn tasks_without_host_rejected() {
+    let folder = folder();
+    let file = test_file(folder.path(), "profile = \"T2\"");
+    let hil = |options: &[&str]| joint(&[&["hil", text(&file)], options].concat());
+    hil(&["--resume"]).refused(&["--resume runs tests as tasks, which have no board", "--host"]);
+    hil(&["--slurm"]).refused(&["--slurm runs tests as tasks", "--host"]);
+    hil(&["--host", "--resume", "--live"]).refused(&["a live view", "leave one of them out"]);
+    joint(&["hil", "q1", "--dask", "tcp://127.0.0.1:1"]).refused(&["--dask is for test files"]);
+}

@@ -47,7 +47,7 @@ struct List {
 pub enum Writers {
     /// One run, since the files of two would mix.
     One,
-    /// Several runs with files of their own, such as the shards of a sweep.
+    /// Several runs with files of their own, such as those that share the tasks of a sweep.
     Several,
 }
 

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::workspace::workspace;
+use crate::workspace::{has_sources, workspace};
 
 /// Version of this command.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -15,6 +15,10 @@ pub fn date() -> String {
 
 /// Commit of the sources, if they are under git; with ` (changed)` if they differ from it.
 pub fn git_commit() -> Option<String> {
+    // An installed program may lie in a repository of its user, whose commit says nothing about these sources.
+    if !has_sources() {
+        return None;
+    }
     let git = |arguments: &[&str]| {
         let output = Command::new("git").arg("-C").arg(workspace()).args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())

@@ -44,6 +44,8 @@ pub struct RunOptions<'c> {
     pub live: Option<&'c Live>,
     /// Folder of the logs.
     pub folder: &'c Folder,
+    /// Runs that tasks have finished; `None` computes the runs here.
+    pub finished: Option<&'c FinishedRuns>,
     /// Called after every run with the number of finished runs.
     pub done: &'c (dyn Fn(u32) + Sync),
 }
@@ -70,6 +72,9 @@ struct Job {
 /// `--seed` repeats any run.
 const MAX_LOGGED_SEEDS: usize = 100;
 
+/// Runs of tasks by test, seed and controller.
+pub type FinishedRuns = BTreeMap<(String, u64, String), TestRun>;
+
 struct FinishedRun {
     values: Option<MetricValues>,
     run: TestRun,
@@ -87,6 +92,11 @@ impl Test {
         }
     }
 
+    /// Returns true if every run leaves a log; otherwise only those of the shown seed do.
+    pub fn keeps_logs(&self, seed: Option<Seeds>, full: bool) -> bool {
+        self.seeds(seed, full).len() <= MAX_LOGGED_SEEDS
+    }
+
     /// Controllers, the tested one first.
     pub fn controllers(&self) -> Vec<ControllerName> {
         std::iter::once(self.file.controller).chain(self.file.rivals.iter().copied()).collect()
@@ -99,17 +109,18 @@ pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> 
     let watch = Watch::until(start + Duration::from_secs_f64(test.file.timeout)).beside(options.live);
     let seeds = test.seeds(options.seed, options.full);
     let controllers = test.controllers();
-    let keep_logs = seeds.len() <= MAX_LOGGED_SEEDS;
+    let keep_logs = test.keeps_logs(options.seed, options.full);
     let job = |seed: u64| controllers.iter().map(move |controller| Job { seed, controller: *controller, keep_logs });
     let jobs: Vec<Job> = seeds.iter().flat_map(|seed| job(*seed)).collect();
-    let done: Vec<Outcome<FinishedRun>> = jobs
-        .par_iter()
-        .map(|job| {
-            let done = run_job(test, options, job, watch);
-            (options.done)(finished_runs.fetch_add(1, Ordering::Relaxed) + 1);
-            done
-        })
-        .collect();
+    let computed = |job: &Job| {
+        let done = match options.finished {
+            Some(finished) => finished_run(test, finished, job),
+            None => run_job(test, options, job, watch),
+        };
+        (options.done)(finished_runs.fetch_add(1, Ordering::Relaxed) + 1);
+        done
+    };
+    let done: Vec<Outcome<FinishedRun>> = jobs.par_iter().map(computed).collect();
     let done: Vec<FinishedRun> = done.into_iter().collect::<Outcome<_>>()?;
     let places: BTreeMap<u64, usize> = seeds.iter().enumerate().map(|(place, seed)| (*seed, place)).collect();
     let values_of = |seed: u64, controller: ControllerName| {
@@ -134,9 +145,12 @@ pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> 
     let mut shown = Vec::new();
     for (job, mut done) in jobs.iter().zip(done) {
         if job.seed == shown_seed {
-            // Without `keep_logs`, log and pictures of the run were not kept: the run is repeated to record them.
-            if !keep_logs {
-                done = run_job(test, options, &Job { keep_logs: true, ..*job }, watch)?;
+            // Without `keep_logs`, log and pictures of the run were not kept, and a task keeps no pictures: the run is
+            // repeated to record them.
+            if !keep_logs || options.finished.is_some() {
+                let again = run_job(test, options, &Job { keep_logs: true, ..*job }, watch)?;
+                check_same(test, &done.run, &again.run)?;
+                done = again;
             }
             shown.push((job.controller, done.trace.unwrap_or_default()));
         }
@@ -167,6 +181,45 @@ pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> 
     };
     let faults = test.file.faults.iter().map(|fault| (fault_word(fault), [fault.start, fault.end])).collect();
     Ok(FinishedTest { record, shown, faults })
+}
+
+/// Runs all controllers of one seed for a task.
+pub fn run_seed(test: &Test, options: &RunOptions<'_>, seed: u64, keep_logs: bool) -> Outcome<Vec<TestRun>> {
+    let watch = Watch::until(Instant::now() + Duration::from_secs_f64(test.file.timeout));
+    let run = |controller| {
+        let run = run_job(test, options, &Job { seed, controller, keep_logs }, watch)?.run;
+        // A slow machine is no property of the run, so it is no result.
+        match run.broken.as_ref().filter(|why| **why == RunError::TimedOut.to_string()) {
+            Some(why) => Err(Failure::new(format!("{}: seed {seed}: {why}", test.name))
+                .with_help("raise timeout_s in the test file, or run fewer tasks at once on a machine")),
+            None => Ok(run),
+        }
+    };
+    test.controllers().into_iter().map(run).collect()
+}
+
+/// Run that a task has finished.
+fn finished_run(test: &Test, finished: &FinishedRuns, job: &Job) -> Outcome<FinishedRun> {
+    let key = (test.name.clone(), job.seed, job.controller.word().to_owned());
+    let run = finished.get(&key).cloned().ok_or_else(|| {
+        Failure::new(format!("{}: no task has run {} in seed {}", test.name, key.2, job.seed))
+            .with_help("remove the folder tasks and run the same command again")
+    })?;
+    let values = run.broken.is_none().then(|| MetricValues::from_figures(&run.figures));
+    Ok(FinishedRun { values, run, trace: None })
+}
+
+/// Refuses a run that gives other bits here than on the machine that ran it first.
+fn check_same(test: &Test, first: &TestRun, again: &TestRun) -> Outcome<()> {
+    if (&first.digest, &first.figures) == (&again.digest, &again.figures) {
+        return Ok(());
+    }
+    let (seed, controller) = (first.seed, &first.controller);
+    Err(Failure::new(format!(
+        "{}: {controller} in seed {seed} has the digest {} from a task, and {} here",
+        test.name, first.digest, again.digest
+    ))
+    .with_help("a machine of the cluster computes other bits: compare `joint task` on its nodes"))
 }
 
 /// Bandwidth of a test's compensation in a seed.

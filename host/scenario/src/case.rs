@@ -2,7 +2,6 @@
 //! the motion, and the disturbance torques.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use joint_file::{JointFile, Problem, Severity};
@@ -304,14 +303,6 @@ fn format_number(value: f64, quantity: NumberOrRange) -> String {
 
 fn problem(span: std::ops::Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Problem {
     Problem { span, message: message.into(), help: help.into(), severity: Severity::Error }
-}
-
-/// Recorded motion of a file, if any.
-pub fn recorded_motion(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion>> {
-    match &file.profile.trajectory {
-        Trajectory::File(name) => RecordedMotion::read(&folder.join(name)).map(Some),
-        _ => Ok(None),
-    }
 }
 
 fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: u64) -> SharedProfile {

@@ -5,7 +5,7 @@
 //! `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through `faults`,
 //! with observer and compensation behind `port`, and `run_history` stores the run; `metrics`, `values` and
 //! `observer_metrics` compute the figures, `verdict` compares them with their bounds, `campaign` combines all seeds;
-//! `page`, `junit`, `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are the
+//! `task_runs` runs the seeds as tasks of a cluster; `page`, `junit`, `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are the
 //! controller's part of a log.
 
 mod any_motion;
@@ -14,7 +14,6 @@ pub mod case;
 pub mod controller;
 pub mod controller_log;
 mod disturbances;
-pub mod encoder_zeros;
 pub mod estimate_fields;
 pub mod execution;
 pub mod faults;
@@ -29,9 +28,7 @@ mod page;
 mod pictures;
 pub mod plant;
 pub mod port;
-pub mod random;
 pub mod record;
-pub mod recorded;
 pub mod rig;
 pub mod run_history;
 #[cfg(test)]
@@ -39,6 +36,7 @@ mod schema;
 pub mod set_point_source;
 pub mod suite;
 pub mod surroundings;
+mod task_runs;
 mod trace;
 pub mod values;
 mod verdict;
@@ -49,12 +47,13 @@ use std::time::Instant;
 
 use live::{Live, PacedLiveOptions};
 
-use campaign::{FinishedTest, RunOptions};
+use campaign::{FinishedRuns, FinishedTest, RunOptions};
 use on_board::{BoardRequest, Boards};
 use plant::PlantName;
 use rayon::prelude::*;
 use record::{NotRun, SCHEMA, TestsRecord};
 use suite::{Choice, Suite, Test};
+use task_runs::TaskResults;
 
 use report::document::{Document, html, terminal};
 use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
@@ -65,6 +64,9 @@ use report::provenance;
 use report::seeds::Seeds;
 use report::write::write_text;
 pub use simulation::sim::live_view;
+pub use simulation::{encoder_zeros, random, recorded};
+pub use task_runs::{KIND, compute};
+use tasks::EngineArguments;
 
 /// Names of the page, of the results as JSON and as JUnit XML, and of the logs.
 const REPORT: &str = "report.html";
@@ -95,6 +97,17 @@ pub struct TestRequest<'w> {
     pub junit: Option<&'w Path>,
     /// Live view of the runs on the host, and of those in the role `observer`.
     pub live: PacedLiveOptions,
+    /// Runs the seeds as tasks that are kept, on the host only.
+    pub tasks: Option<TaskOptions>,
+}
+
+/// Options of runs as tasks.
+#[derive(Debug, Clone)]
+pub struct TaskOptions {
+    /// Engine of the tasks.
+    pub engine: EngineArguments,
+    /// Command that goes on with the tasks in its own process.
+    pub repeat: String,
 }
 
 /// Tests that run on one kind of board, or on the host.
@@ -135,7 +148,14 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     folder.make()?;
     folder::make(&folder.file(log_file::FOLDER))?;
     live.iter().for_each(|live| live.announce(progress));
-    let (tested, not_run) = run_groups(groups, request, &folder, live.as_ref(), progress)?;
+    let finished = match &request.tasks {
+        None => None,
+        Some(options) => match task_runs::run(&groups, request, options, &folder, progress)? {
+            TaskResults::Scripted(message) => return output::print(&message),
+            TaskResults::Finished(runs) => Some(runs),
+        },
+    };
+    let (tested, not_run) = run_groups(groups, request, &folder, live.as_ref(), finished.as_ref(), progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
@@ -169,6 +189,7 @@ fn run_groups(
     request: &TestRequest<'_>,
     folder: &Folder,
     live: Option<&Live>,
+    finished: Option<&FinishedRuns>,
     progress: &Progress,
 ) -> Outcome<GroupResults> {
     let runs_of = |test: &Test| test.seeds(request.seed, request.full).len() * test.controllers().len();
@@ -186,6 +207,7 @@ fn run_groups(
             save_memories: request.save_memories,
             live,
             folder,
+            finished,
             done: &|runs| progress.set_position(runs),
         };
         let run = |test: &Test| {

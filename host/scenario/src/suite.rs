@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use link::messages::Role;
 use sha2::{Digest, Sha256};
 
-use super::case::{Case, check_changes, recorded_motion};
+use super::case::{Case, check_changes};
 use super::faults::check_broken_tooth;
 use super::file::{self, TestFile, Trajectory};
 use super::plant::{PlantName, reject_effects};
@@ -32,6 +32,8 @@ pub struct Test {
     pub joint: Loaded,
     /// Recorded motion, if the test has one.
     pub motion: Option<RecordedMotion>,
+    /// Texts of the test file, of the joint file and of the recorded motion, if the test has one.
+    pub inputs: Vec<String>,
 }
 
 /// Returns true for a folder, or for a file that is not a joint file.
@@ -154,15 +156,46 @@ pub fn from_text(name: &str, text: &str, folder: &Path, plant: PlantName) -> Out
     checked_test(folder.join(name).display().to_string(), text.to_owned(), file, folder, plant)
 }
 
-/// Checks a test with its joint before any run.
+/// Test from the texts of its [`Test::inputs`], without any file.
+pub fn from_inputs(name: &str, inputs: &[&str], joint: &str, plant: PlantName) -> Outcome<Test> {
+    let mut texts = inputs.iter().map(ToString::to_string);
+    let [text, joint_text] = [texts.next().unwrap_or_default(), texts.next().unwrap_or_default()];
+    let file = read_text(name, &text)?;
+    let joint = named::read_changed(joint.to_owned(), joint_text, &[])?;
+    with_joint(name.to_owned(), text, file, joint, texts.next(), plant)
+}
+
+/// Reads the files of a test, and checks it before any run.
 fn checked_test(name: String, text: String, file: TestFile, folder: &Path, plant: PlantName) -> Outcome<Test> {
     let joint = load_joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
+    let motion = match &file.profile.trajectory {
+        Trajectory::File(motion) => Some(RecordedMotion::text(&folder.join(motion))),
+        _ => None,
+    };
+    let motion = motion.transpose().map_err(|failure| failure.while_doing(&name))?;
+    with_joint(name, text, file, joint, motion, plant)
+}
+
+/// Checks a test with its joint and the text of its recorded motion before any run.
+fn with_joint(
+    name: String,
+    text: String,
+    file: TestFile,
+    joint: Loaded,
+    motion_text: Option<String>,
+    plant: PlantName,
+) -> Outcome<Test> {
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
     let help = "run it with --plant reference, with --host or --role observer";
     check_broken_tooth(&file.faults, &joint.file.parameters, plant, help)
         .map_err(|failure| failure.while_doing(&name))?;
-    let motion = recorded_motion(&file, folder).map_err(|failure| failure.while_doing(&name))?;
+    let motion = match (&file.profile.trajectory, &motion_text) {
+        (Trajectory::File(path), Some(text)) => Some(RecordedMotion::parse(text).map_err(|failure| {
+            failure.while_doing(Path::new(&name).with_file_name(path).display()).while_doing(&name)
+        })?),
+        _ => None,
+    };
     if let Some(motion) = motion.as_ref().filter(|_| !file.states_duration) {
         check_length(motion.duration(), "duration_s").map_err(|failure| failure.while_doing(&name))?;
     }
@@ -171,7 +204,9 @@ fn checked_test(name: String, text: String, file: TestFile, folder: &Path, plant
         (Some(motion), false) => TestFile { duration: motion.duration().max(file.settle + 0.1), ..file },
         _ => file,
     };
-    let test = Test { name, sha256: sha256(&text), file, joint, motion };
+    let sha256 = sha256(&text);
+    let inputs = [text, joint.text.clone()].into_iter().chain(motion_text).collect();
+    let test = Test { name, sha256, file, joint, motion, inputs };
     test.check_design(plant)?;
     Ok(test)
 }

@@ -1,6 +1,8 @@
 //! Values of the metrics of one run, from the true motion. `metrics` defines them; `observer_metrics` computes those of
 //! the observer.
 
+use std::collections::BTreeMap;
+
 use model_core::gears::Kinematics;
 use reference::closed_loop::{Figures as Plain, Sample, deviation};
 
@@ -38,6 +40,11 @@ impl MetricValues {
             values.hysteresis(file, case, history);
         }
         values
+    }
+
+    /// Values from the figures of a record, which has every available one.
+    pub fn from_figures(figures: &BTreeMap<String, f64>) -> Self {
+        Self(METRICS.iter().map(|metric| figures.get(&metric.name()).copied()).collect())
     }
 
     /// Metrics and values that are available.

@@ -54,6 +54,7 @@ pub fn run_all(folder: &Path, seeds: u64) -> Outcome<()> {
                 json: None,
                 junit: None,
                 live: Default::default(),
+                tasks: None,
             };
             match scenario::run(&request, progress) {
                 Err(failure) if failure.exit_code() == EXIT_INTERRUPTED => return Err(failure),

@@ -44,6 +44,9 @@ const LARGEST_IMAGE: u32 = 256 << 10;
 const FLASH_START: u64 = 0x0800_0000;
 const RAM_START: u64 = 0x2000_0000;
 
+/// Words of the error about an image that does not fit the board.
+pub const TOO_LARGE: &str = "too large for the board";
+
 /// A finished image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
@@ -327,7 +330,7 @@ fn build(
 
 /// Extracts the linker's one-line message about an image that is too large for the board.
 fn size_failure(failure: &Failure, board: &Board) -> Option<Failure> {
-    let line = failure.message().lines().find(|line| line.contains("too large for the board"))?;
+    let line = failure.message().lines().find(|line| line.contains(TOO_LARGE))?;
     let what = line.rsplit("error: ").next().unwrap_or(line).trim();
     Some(Failure::new(what).with_help(format!(
         "use a role that needs less (`--role plant` is the smallest), or a board with more memory: `joint board check {}` \

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use report::workspace::{require_sources, workspace};
 
-use super::cross_build::{TARGET, clear_host_settings};
+use super::cross_build::{TARGET, clear_host_settings, remapped_paths};
 use super::{Say, packages, sysroot, tool};
 use report::failure::{Failure, Outcome};
 
@@ -33,6 +33,8 @@ pub struct Toolchain {
     version: String,
     folder: PathBuf,
     target_directory: PathBuf,
+    /// True if results name no folder of this machine.
+    is_for_release: bool,
 }
 
 impl Toolchain {
@@ -54,7 +56,8 @@ impl Toolchain {
     /// Description of all flags that change the code, apart from the profile.
     pub fn flags(&self) -> String {
         let core = if self.sysroot.is_some() { "built here" } else { "as delivered" };
-        format!("--target {TARGET}, core library {core}")
+        let paths = if self.is_for_release { ", paths remapped" } else { "" };
+        format!("--target {TARGET}, core library {core}{paths}")
     }
 
     /// Folder of images and other results.
@@ -73,6 +76,12 @@ impl Toolchain {
         Self { folder: folder.to_path_buf(), ..self.clone() }
     }
 
+    /// Returns this toolchain for a release: its results name no folder of this machine, and lie below `folder`.
+    pub fn for_release(&self, folder: &Path) -> Self {
+        let build = folder.join(self.folder.strip_prefix(&self.target_directory).unwrap_or(Path::new("firmware")));
+        Self { folder: build, target_directory: folder.to_path_buf(), is_for_release: true, ..self.clone() }
+    }
+
     /// Returns whether the distribution's toolchain is used; clippy must then match the compiler that built the core
     /// library.
     pub fn is_distribution(&self) -> bool {
@@ -86,6 +95,11 @@ impl Toolchain {
             flags.push("--sysroot=");
             flags.push(sysroot);
             flags.push(" -Clinker=ld.lld -Clinker-flavor=ld.lld");
+        }
+        let remapped = if self.is_for_release { remapped_paths(&self.target_directory) } else { Vec::new() };
+        for flag in remapped {
+            flags.push(" ");
+            flags.push(flag);
         }
         flags
     }
@@ -135,6 +149,7 @@ fn compiler_in_use(target_directory: &Path) -> Option<Toolchain> {
         version,
         folder: target_directory.join("firmware/in-use"),
         target_directory: target_directory.to_path_buf(),
+        is_for_release: false,
     })
 }
 
@@ -169,7 +184,8 @@ fn distribution(target_directory: PathBuf, say: Say<'_>) -> Outcome<Toolchain> {
     let sysroot = sysroot::prepare(&cargo, &rustc, &version, &target_directory, say)?;
     let name = sysroot.file_name().unwrap_or_default();
     let folder = target_directory.join("firmware").join(name);
-    Ok(Toolchain { cargo, rustc: Some(rustc), sysroot: Some(sysroot), version, folder, target_directory })
+    let (rustc, sysroot, is_for_release) = (Some(rustc), Some(sysroot), false);
+    Ok(Toolchain { cargo, rustc, sysroot, version, folder, target_directory, is_for_release })
 }
 
 /// Version text of the distribution's compiler, if it is complete and new enough.

@@ -246,6 +246,7 @@ fn new_run_log() -> Option<Vec<u8>> {
         json: None,
         junit: None,
         live: Default::default(),
+        tasks: None,
     };
     scenario::run(&request, &Progress::new()).ok()?;
     let mut logs = fs::read_dir(folder.path().join("out/runs")).ok()?;

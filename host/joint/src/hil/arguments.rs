@@ -10,6 +10,7 @@ use live::PacedLiveOptions;
 use report::seeds::Seeds;
 use report::workspace::workspace;
 use scenario::plant::PlantName;
+use tasks::EngineArguments;
 
 /// Folder of the tests that come with the program, in the workspace and in an installed program's data.
 pub const TESTS: &str = "hil";
@@ -28,6 +29,7 @@ const DECIMATION: u16 = 20;
   joint hil hil --host --plant reference      all tests of observer and compensation in the folder hil
   joint hil hil/t2.toml --host --seed 7       one of them, with another seed
   joint hil hil/t2.toml --host --live --live-speed 1   a page that shows it in real time
+  joint hil hil/never-worse.toml --host --seed 1-10000 --dask tcp://10.0.0.5:8786   on the workers of a Dask scheduler
   joint hil hil/t2.toml --role loop           the same with joint and controller on the emulated board
 
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
@@ -46,6 +48,13 @@ pub struct Arguments {
     /// file, for `joint memory`
     #[arg(long, requires = "host")]
     pub memory: bool,
+    /// Test files with --host: keeps the result of every seed in the folder `tasks` of --out, and goes on from the results
+    /// that are there; --dask and --slurm do so too
+    #[arg(long)]
+    pub resume: bool,
+    /// Test files with --host: engine of the tasks.
+    #[command(flatten)]
+    pub engine: EngineArguments,
     /// Test files: runs this seed, or a range of seeds (1-10000), in place of the file's
     #[arg(long, value_name = "N|FROM-TO", allow_negative_numbers = true)]
     pub seed: Option<Seeds>,

@@ -7,6 +7,7 @@ use link::messages::Role;
 
 use super::arguments::{Arguments, TESTS};
 use board::line_options::RoleName;
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::workspace::workspace;
@@ -14,7 +15,7 @@ use scenario::on_board::BoardRequest;
 use scenario::plant::PlantName;
 use scenario::suite;
 use scenario::suite::Choice;
-use scenario::{TestGroup, TestRequest};
+use scenario::{TaskOptions, TestGroup, TestRequest};
 
 /// Request for the tests in a file or folder; rejects arguments that belong to joints.
 pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
@@ -51,6 +52,7 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         )
         .with_help("add --host or --role observer"));
     }
+    check_tasks(arguments)?;
     let path = arguments.tests();
     // The bounds of the tests that come with the program are stated around the reference.
     let default_plant = if arguments.file.is_none() { PlantName::Reference } else { PlantName::Core };
@@ -61,7 +63,47 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         path,
     };
     let name = group.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(request_of_groups(arguments, vec![group], name, arguments.out.clone()))
+    let tasks = task_options(arguments, &group);
+    Ok(TestRequest { tasks, ..request_of_groups(arguments, vec![group], name, arguments.out.clone()) })
+}
+
+/// Options of the command line that run the seeds as tasks.
+fn task_arguments(arguments: &Arguments) -> [(&'static str, bool); 3] {
+    let engine = &arguments.engine;
+    [("dask", engine.dask.is_some()), ("slurm", engine.slurm), ("resume", arguments.resume)]
+}
+
+/// Rejects tasks on a board, and a live view of tasks.
+fn check_tasks(arguments: &Arguments) -> Outcome<()> {
+    let Some((name, _)) = task_arguments(arguments).into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    if !arguments.host {
+        return Err(Failure::new(format!("--{name} runs tests as tasks, which have no board"))
+            .with_help(format!("add --host, or leave --{name} out")));
+    }
+    if arguments.live.view.is_wanted() {
+        return Err(Failure::new(format!("a live view shows runs of this process, and --{name} keeps them as tasks"))
+            .with_help("leave one of them out"));
+    }
+    Ok(())
+}
+
+/// Options of runs as tasks, with the command that goes on with them.
+fn task_options(arguments: &Arguments, group: &TestGroup<'_>) -> Option<TaskOptions> {
+    task_arguments(arguments).iter().any(|(_, given)| *given).then(|| {
+        let mut repeat = format!(
+            "cargo joint hil {} --host --plant {} --resume",
+            quoted(&group.path.display().to_string()),
+            group.plant.word()
+        );
+        arguments.seed.iter().for_each(|seed| repeat += &format!(" --seed {seed}"));
+        let flags = [("full", arguments.full), ("memory", arguments.memory)];
+        flags.iter().filter(|(_, given)| *given).for_each(|(name, _)| repeat += &format!(" --{name}"));
+        let files = [("out", &arguments.out), ("json", &arguments.json), ("junit", &arguments.junit)];
+        for (name, file) in files {
+            file.iter().for_each(|file| repeat += &format!(" --{name} {}", quoted(&file.display().to_string())));
+        }
+        TaskOptions { engine: arguments.engine.clone(), repeat }
+    })
 }
 
 /// Request for the tests that come with the program, if no file is named: the tests marked for the board run on the
@@ -105,6 +147,7 @@ fn request_of_groups<'a>(
         json: arguments.json.as_deref().filter(|_| arguments.file.is_some() || arguments.host),
         junit: arguments.junit.as_deref(),
         live: arguments.live.clone(),
+        tasks: None,
     }
 }
 
@@ -132,6 +175,9 @@ pub fn reject_test_arguments(arguments: &Arguments) -> Outcome<()> {
         ("plant", arguments.plant.is_some()),
         ("full", arguments.full && alone),
         ("junit", arguments.junit.is_some() && alone),
+        ("resume", arguments.resume),
+        ("dask", arguments.engine.dask.is_some()),
+        ("slurm", arguments.engine.slurm),
         ("live", arguments.live.view.live.is_some() && alone),
         ("live-udp", arguments.live.view.live_udp.is_some() && alone),
     ];

@@ -25,10 +25,6 @@ fn inputs() -> PathBuf {
     write_short_log(&path("log.csv"), QUICK_ROWS);
     fs::write(path("sweeps.csv"), sweeps()).expect("room");
     fs::write(path("still.csv"), still()).expect("room");
-    for shard in ["1/2", "2/2"] {
-        joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).succeeded();
-    }
-    fs::remove_file(path("shards/points.csv")).expect("the last shard has written it");
     inputs
 }
 
@@ -71,7 +67,6 @@ const SHEET: [&str; 14] = [
 pub enum Writer {
     Sim,
     Sweep,
-    Merge,
     Tests,
     Board,
     Identify,
@@ -92,17 +87,8 @@ pub struct Line {
 
 impl Writer {
     /// Commands that write to the folder of `--out`.
-    pub const TO_FOLDERS: [Self; 9] = [
-        Self::Sim,
-        Self::Sweep,
-        Self::Merge,
-        Self::Tests,
-        Self::Board,
-        Self::Identify,
-        Self::SlowLog,
-        Self::Replay,
-        Self::Tables,
-    ];
+    pub const TO_FOLDERS: [Self; 8] =
+        [Self::Sim, Self::Sweep, Self::Tests, Self::Board, Self::Identify, Self::SlowLog, Self::Replay, Self::Tables];
 
     /// Returns true for commands that take a second or more; a short run of the test repeats them less often.
     pub fn is_slow(self) -> bool {
@@ -127,7 +113,6 @@ impl Writer {
         let words: Vec<String> = match self {
             Self::Sim => words(&["sim", "l1", "--duration", "0.02", "--no-energy"]),
             Self::Sweep => words(&SWEEP),
-            Self::Merge => words(&["merge", &input("shards")]),
             Self::Tests => words(&["hil", &input("test.toml"), "--host"]),
             Self::Board => {
                 let path = out.with_extension("port");

@@ -106,30 +106,39 @@ impl MotionArguments {
 
     /// Options that repeat the motion, each with a leading space.
     pub fn replay(&self) -> String {
-        let mut options = String::new();
-        let mut option = |name: &str, value: Option<String>| {
-            if let Some(value) = value {
-                options += &format!(" --{name} {}", quoted(&value));
-            }
+        let shown = |(name, value): (&str, Option<String>)| match value {
+            Some(value) => format!(" --{name} {}", quoted(&value)),
+            None => format!(" --{name}"),
         };
-        for change in &self.set {
-            option("set", Some(change.clone()));
-        }
-        option("duration", self.duration.map(|value| value.to_string()));
-        option("settle", self.settle.map(|value| value.to_string()));
-        option("rate", self.rate.map(|value| value.to_string()));
-        option("profile", self.profile.clone());
-        option("drive", self.drive.map(|value| value.to_string()));
-        option("load", self.load.map(|value| value.to_string()));
-        option("start", self.start.map(|start| start.name().to_owned()));
-        option("speed", self.speed.map(|value| value.to_string()));
-        option("board", self.board.as_ref().map(|board| board.argument.clone()));
-        if self.f64 {
-            options += " --f64";
-        }
-        if self.accurate {
-            options += " --accurate";
-        }
+        self.options().into_iter().map(shown).collect()
+    }
+
+    /// Options that repeat the motion, as words of a command line.
+    pub fn words(&self) -> Vec<String> {
+        let word = |(name, value): (&str, Option<String>)| match value {
+            Some(value) => format!("--{name}={value}"),
+            None => format!("--{name}"),
+        };
+        self.options().into_iter().map(word).collect()
+    }
+
+    /// Given options with their values; `None` for an option without value.
+    fn options(&self) -> Vec<(&'static str, Option<String>)> {
+        let mut options: Vec<_> = self.set.iter().map(|change| ("set", Some(change.clone()))).collect();
+        let valued = [
+            ("duration", self.duration.map(|value| value.to_string())),
+            ("settle", self.settle.map(|value| value.to_string())),
+            ("rate", self.rate.map(|value| value.to_string())),
+            ("profile", self.profile.clone()),
+            ("drive", self.drive.map(|value| value.to_string())),
+            ("load", self.load.map(|value| value.to_string())),
+            ("start", self.start.map(|start| start.name().to_owned())),
+            ("speed", self.speed.map(|value| value.to_string())),
+            ("board", self.board.as_ref().map(|board| board.argument.clone())),
+        ];
+        options.extend(valued.into_iter().filter(|(_, value)| value.is_some()));
+        let flags = [("f64", self.f64), ("accurate", self.accurate)];
+        options.extend(flags.into_iter().filter(|(_, given)| *given).map(|(name, _)| (name, None)));
         options
     }
 }

@@ -1,13 +1,13 @@
-//! Folder of a sweep: `sweep.json`, journals, and `points.csv` with its page once all points are finished. A folder
+//! Folder of a sweep: `sweep.json`, its tasks, and `points.csv` with its page once all points are finished. A folder
 //! with foreign files is rejected before any file is written.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::grid::Grid;
-use super::journal::{self, Points};
 use super::manifest::Manifest;
 use super::page;
+use super::points::Points;
 use report::document::html;
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -19,6 +19,10 @@ pub const MANIFEST: &str = "sweep.json";
 pub const RESULT: &str = "points.csv";
 /// Result as a page.
 pub const REPORT: &str = "report.html";
+/// Folder of the tasks.
+pub const TASKS: &str = "tasks";
+/// First letters of the journals of versions before tasks.
+const JOURNAL: &str = "journal-";
 /// Largest number of foreign files in a message.
 const MAX_LISTED_FILES: usize = 3;
 
@@ -34,7 +38,7 @@ impl SweepFolder {
         folder::make(path)?;
         // Foreign files are reported before another sweep: a sweep needs a folder of its own.
         let foreign = foreign_files(path)?;
-        // Checked after the listing, since this file is always created before a journal.
+        // Checked after the listing, since this file is always created before a task.
         let has_manifest = path.join(MANIFEST).exists();
         if !foreign.is_empty() {
             return Err(foreign_files_error(path, &foreign, has_manifest));
@@ -55,54 +59,9 @@ impl SweepFolder {
         Ok(Self { folder })
     }
 
-    /// Opens a folder that must hold a sweep.
-    pub fn existing(path: &Path) -> Outcome<(Self, Manifest)> {
-        if !path.is_dir() {
-            return Err(Failure::new(format!("{} is not a folder", path.display()))
-                .with_help("name the folders that `joint sweep --out DIR` has made"));
-        }
-        if !path.join(MANIFEST).exists() {
-            return Err(Failure::new(format!("{} is not a sweep: it has no {MANIFEST}", path.display()))
-                .with_help("name the folders that `joint sweep --out DIR` has made"));
-        }
-        let manifest = Manifest::read(&path.join(MANIFEST))?;
-        // This folder is only read.
-        Ok((Self { folder: Folder::choose(Some(path), "sweep", &manifest.joint, &[])? }, manifest))
-    }
-
-    /// Path of the folder.
-    pub fn path(&self) -> &Path {
-        self.folder.path()
-    }
-
-    /// Journals of the folder, by name.
-    pub fn journals(&self) -> Outcome<Vec<PathBuf>> {
-        let mut journals: Vec<PathBuf> = entries(self.path())?
-            .into_iter()
-            .filter(|name| journal::shard_of(name).is_some())
-            .map(|name| self.folder.file(&name))
-            .collect();
-        journals.sort();
-        Ok(journals)
-    }
-
-    /// Adds every finished point of every shard; equal points of two journals must agree.
-    pub fn points(&self, digest: &str, into: &mut Points) -> Outcome<()> {
-        for path in self.journals()? {
-            for (point, result) in journal::read(&path, digest)? {
-                if let Some(other) = into.get(&point)
-                    && *other != result
-                {
-                    let message = format!(
-                        "point {point} is `{result}` in {}, and `{other}` elsewhere: one sweep cannot give two results",
-                        path.display()
-                    );
-                    return Err(Failure::new(message).with_help("sweep again into a new folder by --out DIR"));
-                }
-                into.insert(point, result);
-            }
-        }
-        Ok(())
+    /// Path of the folder of the tasks.
+    pub fn tasks(&self) -> PathBuf {
+        self.folder.file(TASKS)
     }
 
     /// Writes all points in order, and returns a message with the paths.
@@ -149,8 +108,8 @@ fn entries(path: &Path) -> Outcome<Vec<String>> {
 /// Names of files that no sweep has written.
 fn foreign_files(path: &Path) -> Outcome<Vec<String>> {
     let own = |name: &String| {
-        let known = [MANIFEST, RESULT, REPORT].contains(&name.as_str()) || journal::shard_of(name).is_some();
-        known && path.join(name).is_file()
+        let file = [MANIFEST, RESULT, REPORT].contains(&name.as_str()) && path.join(name).is_file();
+        file || (name == TASKS && path.join(name).is_dir())
     };
     let mut names = entries(path)?;
     let swept = names.iter().any(|name| name == MANIFEST) || path.join(MANIFEST).exists();
@@ -164,6 +123,13 @@ fn foreign_files_error(path: &Path, foreign: &[String], swept: bool) -> Failure 
     let mut named = foreign[..foreign.len().min(MAX_LISTED_FILES)].join(", ");
     if more > 0 {
         named += &format!(" and {more} more");
+    }
+    if swept && foreign.iter().all(|name| name.starts_with(JOURNAL)) {
+        let message =
+            format!("{} holds journals of an older version, which this one does not read: {named}", path.display());
+        return Failure::new(message).with_help(
+            "its points.csv stays valid; to sweep again, name another folder by --out DIR or remove the journals",
+        );
     }
     let message = match swept {
         true => format!("{} holds files beside its sweep: {named}", path.display()),

@@ -1,6 +1,4 @@
-//! Grid of a sweep: every combination of its axes, numbered with the last axis fastest, and the points of a shard.
-
-use std::str::FromStr;
+//! Grid of a sweep: every combination of its axes, numbered with the last axis fastest.
 
 use super::axis::Axis;
 use joint_file::named::{self, Loaded};
@@ -18,15 +16,6 @@ pub struct Grid {
     pub axes: Vec<Axis>,
     /// Number of points.
     pub points: u64,
-}
-
-/// A part of the points: those whose number modulo `count` is `index - 1`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
-    /// Index from 1.
-    pub index: u64,
-    /// Number of shards.
-    pub count: u64,
 }
 
 impl Grid {
@@ -115,34 +104,6 @@ fn too_many(axes: &[Axis], count: f64) -> Failure {
     Failure::new(message).with_help(help.unwrap_or_else(|| "give fewer values".to_owned()))
 }
 
-impl Shard {
-    /// All points.
-    pub const WHOLE: Self = Self { index: 1, count: 1 };
-
-    /// Returns true if the point belongs to the shard.
-    pub fn contains(self, point: u64) -> bool {
-        point % self.count == self.index - 1
-    }
-}
-
-impl FromStr for Shard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let shape = || format!("`{text}` is not i/n with i from 1 to n, such as 2/16");
-        let (index, count) = text.split_once('/').ok_or_else(shape)?;
-        let number = |text: &str| text.trim().parse::<u64>().map_err(|_| shape());
-        let shard = Self { index: number(index)?, count: number(count)? };
-        ((1..=shard.count).contains(&shard.index) && shard.count <= MAX_POINTS).then_some(shard).ok_or_else(shape)
-    }
-}
-
-impl std::fmt::Display for Shard {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(formatter, "{}/{}", self.index, self.count)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,20 +119,6 @@ mod tests {
         assert_eq!(grid.values(0), ["10", "0.05"]);
         assert_eq!(grid.values(1), ["10", "0.1"]);
         assert_eq!(grid.values(5), ["30", "0.1"]);
-    }
-
-    #[test]
-    fn shards_cover_every_point_once() {
-        for count in 1..9u64 {
-            for point in 0..100 {
-                let owners = (1..=count).filter(|&index| Shard { index, count }.contains(point)).count();
-                assert_eq!(owners, 1);
-            }
-        }
-        assert_eq!("2/16".parse(), Ok(Shard { index: 2, count: 16 }));
-        for bad in ["0/4", "5/4", "4", "a/b", "1/0", "-1/4", "1/99999999"] {
-            assert!(bad.parse::<Shard>().is_err(), "{bad}");
-        }
     }
 
     /// The error of a grid with too many points names their number and a coarser step.

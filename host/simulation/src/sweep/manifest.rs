@@ -1,13 +1,13 @@
 //! Manifest of a sweep, `sweep.json` in its folder. Sweeps with equal digests compute equal points; paths, threads,
-//! shards and dates are not part of the digest.
+//! engines and dates are not part of the digest.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::grid::Grid;
-use super::journal::read_error;
 use super::metrics::Metric;
 use report::failure::{Failure, Outcome};
 use report::input;
@@ -67,12 +67,20 @@ impl Manifest {
 
     /// Reads `sweep.json` and checks its schema and digest.
     pub fn read(path: &Path) -> Outcome<Self> {
+        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
+            Failure::new(format!("cannot read {}: {why}", path.display()))
+                .with_help("see that the folder and its files may be read")
+        })?;
+        Self::parse(&path.display(), &text)
+    }
+
+    /// Reads a manifest and checks its schema and digest.
+    pub fn parse(place: &dyn Display, text: &str) -> Outcome<Self> {
         let spoilt = |why: String| {
-            Failure::new(format!("{} is not a sweep's manifest: {why}", path.display()))
+            Failure::new(format!("{place} is not a sweep's manifest: {why}"))
                 .with_help("name another folder by --out DIR; this one is left as it is")
         };
-        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| read_error(path, &why))?;
-        let manifest: Self = serde_json::from_str(&text).map_err(|error| spoilt(error.to_string()))?;
+        let manifest: Self = serde_json::from_str(text).map_err(|error| spoilt(error.to_string()))?;
         if manifest.schema != SCHEMA {
             return Err(spoilt(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema)));
         }

@@ -1,30 +1,26 @@
-//! Simulates every joint of a grid, in parallel, resumable and in shards.
+//! Simulates every joint of a grid, in tasks that this process, Dask workers or a SLURM array run.
 //!
-//! `axis` and `grid` define the points, `manifest` identifies the sweep, `folder` and `journal` store finished points,
-//! `metrics` computes a point, `work` distributes the points, `merge` combines shards; `page` shows the result, with
-//! `pictures` of its `table`.
+//! `axis` and `grid` define the points, `manifest` identifies the sweep, `points` divides it into tasks and computes them
+//! by `metrics`, `folder` holds tasks and result; `page` shows the result, with `pictures` of its `table`.
 
 mod axis;
 mod folder;
 mod grid;
-mod journal;
 pub(crate) mod manifest;
-mod merge;
 mod metrics;
 mod page;
 mod pictures;
+mod points;
 mod table;
-mod work;
 
 use std::path::{Path, PathBuf};
 
 use folder::SweepFolder;
-use grid::{Grid, Shard};
-use journal::{Journal, Points};
+use grid::Grid;
 use manifest::{Manifest, sha256};
-pub use merge::merge;
 use metrics::Metric;
-use work::Work;
+use points::Computation;
+pub use points::{KIND, compute};
 
 use crate::sim::arguments::MotionArguments;
 use crate::sim::scheme::{SchemeChoice, SchemeName};
@@ -37,17 +33,18 @@ use report::input;
 use report::interruption::UninterruptedWork;
 use report::output;
 use report::progress::Progress;
+use tasks::{EngineArguments, Execution, Progressed, TaskFolder};
 
 /// Arguments of `joint sweep`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   joint sweep paper --vary mesh.half_backlash_um=0:150:0.5
   joint sweep q1 --vary half_backlash_um=10:80:5 --vary mesh.damping_ratio=0.03,0.05,0.1 --profile reversals
-  joint sweep paper --vary half_backlash_um=0:150:0.1 --shard 3/16 --out bifurcation     one job of sixteen
-  joint merge bifurcation                                                                 when all are done
+  joint sweep paper --vary half_backlash_um=0:150:0.1 --dask tcp://10.0.0.5:8786     on the workers of a Dask scheduler
+  joint sweep paper --vary half_backlash_um=0:150:0.1 --slurm                        a job script for a SLURM array
 
-Stopped or killed, the same command goes on from where it was. The result is points.csv in the folder, and report.html with its
-map: the same bytes whatever the number of threads and shards.
+Stopped or killed, the same command goes on from where it was, with any engine. The result is points.csv in the folder, and
+report.html with its map: the same bytes whatever the engine, the number of threads, and the workers lost.
 
 Exit code: 0 if all points are there, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
@@ -69,9 +66,12 @@ pub struct Arguments {
     /// Folder of the sweep [default: joint-out/sweep/<joint>-<digest>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Computes only the i-th of n parts of the grid, for job arrays
-    #[arg(long, value_name = "I/N", default_value = "1/1")]
-    pub shard: Shard,
+    /// Engine of the tasks.
+    #[command(flatten)]
+    pub engine: EngineArguments,
+    /// Removed option of older versions.
+    #[arg(long, value_name = "I/N", hide = true)]
+    pub shard: Option<String>,
     /// Number of threads [default: number of processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -79,6 +79,7 @@ pub struct Arguments {
 
 /// Runs or continues a sweep, and returns the message with the paths.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
+    refuse_shard(arguments)?;
     let scheme = scheme(arguments.scheme)?;
     arguments.motion.check_for(scheme)?;
     let base = named::load_with(&arguments.file, &arguments.motion.set)?;
@@ -89,55 +90,53 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
     // The joint file already contains the changes of the command line.
     let motion = MotionArguments { set: Vec::new(), ..arguments.motion.clone() };
-    let manifest = manifest(&base, &grid, &metrics, scheme, &motion)?;
+    let profile = profile_text(&motion)?;
+    let manifest = manifest(&base, &grid, &metrics, scheme, &motion, profile.as_deref())?;
     let path = arguments.out.clone().unwrap_or_else(|| usual_folder(&manifest));
     let folder = SweepFolder::prepare(&path, &manifest)?;
-    // Points in progress are still stored when the user stops the run.
+    // Tasks in progress are still stored when the user stops the run.
     let _uninterrupted = UninterruptedWork::begin();
-    let mut journal = Journal::open(folder.path(), arguments.shard, &manifest.digest)?;
-    let mut done = Points::new();
-    folder.points(&manifest.digest, &mut done)?;
-    let todo: Vec<u64> =
-        (0..grid.points).filter(|point| arguments.shard.contains(*point) && !done.contains_key(point)).collect();
-    if !done.is_empty() {
-        output::remark(&format!("continuing: {} of {} points are in {}", done.len(), grid.points, path.display()));
+    let tasks = TaskFolder::prepare(&folder.tasks(), points::tasks(&manifest, &motion, profile)?)?;
+    let computation = Computation { base: &base, grid: &grid, motion: &motion, scheme, metrics: &metrics };
+    let execution = Execution {
+        engine: &arguments.engine,
+        threads: arguments.threads,
+        repeat: repeat_command(arguments, &path),
+        compute: &|_, task| computation.task(task),
+    };
+    if let Progressed::Scripted(message) = tasks.run(&execution, progress)? {
+        return Ok(message);
     }
-    progress.run("sweeping", todo.len() as u32);
-    let work =
-        Work { base: &base, grid: &grid, motion: &motion, scheme, metrics: &metrics, threads: arguments.threads };
-    let outcome = work.run(&todo, &mut journal, progress);
-    progress.clear();
-    let result = outcome?;
-    if let Some(remark) = &result.remark {
-        output::remark(&format!("{} points were refused; the first: {remark}", result.refused));
+    let points = points::collect(&tasks)?;
+    let refused = |result: &String| result.starts_with("refused");
+    let count = points.values().filter(|result| refused(result)).count();
+    if let Some((point, _)) = points.iter().find(|(_, result)| refused(result)) {
+        let why = computation.refusal(*point).unwrap_or_default();
+        output::remark(&format!("{count} points were refused; the first: {why}"));
     }
-    if result.finished < todo.len() {
-        let left = todo.len() - result.finished;
-        return Err(Failure::interrupted(format!("stopped by the user: {left} of {} points are left", grid.points))
-            .with_help(format!(
-                "all others are kept in {}; run this command to continue:\n{}",
-                path.display(),
-                replay_command(arguments, &path)
-            )));
-    }
-    conclude(arguments, &folder, &manifest, &grid)
+    folder.write_result(&manifest, &grid, &points)
 }
 
-/// Writes the result if all shards are complete; otherwise returns the number of points that are left.
-fn conclude(arguments: &Arguments, folder: &SweepFolder, manifest: &Manifest, grid: &Grid) -> Outcome<String> {
-    let mut points = Points::new();
-    folder.points(&manifest.digest, &mut points)?;
-    if points.len() as u64 == grid.points {
-        return folder.write_result(manifest, grid, &points);
-    }
-    Ok(format!(
-        "shard {} is done: {} of {} points are in {}\nwhen all shards are: cargo joint merge {}\n",
-        arguments.shard,
-        points.len(),
-        grid.points,
-        folder.path().display(),
-        quoted(&folder.path().display().to_string())
-    ))
+/// Refuses the option of versions that divided a sweep into shards with a journal each.
+fn refuse_shard(arguments: &Arguments) -> Outcome<()> {
+    arguments.shard.as_ref().map_or(Ok(()), |shard| {
+        Err(Failure::new(format!("--shard {shard} was removed: a sweep is divided into tasks with a result each"))
+            .with_help(
+                "give --slurm for a job array or --dask ADDRESS; then the same command without it collects the results",
+            ))
+    })
+}
+
+/// Text of a torque profile from a file.
+fn profile_text(motion: &MotionArguments) -> Outcome<Option<String>> {
+    let profile = motion.profile.as_ref().filter(|name| !BUILTIN.contains(&name.as_str()));
+    let read = profile.map(|path| {
+        input::text(Path::new(path), input::LARGEST_RECORDED).map_err(|why| {
+            Failure::new(format!("cannot read the profile {path}: {why}"))
+                .with_help(format!("built in: {}; or name a CSV file", BUILTIN.join(", ")))
+        })
+    });
+    read.transpose()
 }
 
 fn scheme(choice: SchemeChoice) -> Outcome<SchemeName> {
@@ -159,15 +158,8 @@ fn manifest(
     metrics: &[Metric],
     scheme: SchemeName,
     motion: &MotionArguments,
+    profile: Option<&str>,
 ) -> Outcome<Manifest> {
-    let profile = motion.profile.as_ref().filter(|name| !BUILTIN.contains(&name.as_str()));
-    let profile_sha256 = profile.map(|path| {
-        let read = input::bytes(Path::new(path), input::LARGEST_RECORDED).map_err(|why| {
-            Failure::new(format!("cannot read the profile {path}: {why}"))
-                .with_help(format!("built in: {}; or name a CSV file", BUILTIN.join(", ")))
-        });
-        read.map(|bytes| sha256(&bytes))
-    });
     // The contents of a profile matter, not its path.
     let motion = match profile {
         Some(_) => MotionArguments { profile: Some("file".into()), ..motion.clone() },
@@ -183,7 +175,7 @@ fn manifest(
         metrics: metrics.to_vec(),
         scheme: scheme.name().to_owned(),
         motion: motion.replay(),
-        profile_sha256: profile_sha256.transpose()?,
+        profile_sha256: profile.map(|text| sha256(text.as_bytes())),
         joint_file: base.text.clone(),
     };
     Ok(manifest.sealed())
@@ -193,8 +185,8 @@ fn usual_folder(manifest: &Manifest) -> PathBuf {
     report::folder::default_folder("sweep", &format!("{}-{}", manifest.joint, &manifest.digest[..8]))
 }
 
-/// Command that continues this sweep.
-fn replay_command(arguments: &Arguments, path: &Path) -> String {
+/// Command that continues this sweep in its own process.
+fn repeat_command(arguments: &Arguments, path: &Path) -> String {
     let mut command = format!("cargo joint sweep {}", quoted(&arguments.file.display().to_string()));
     for vary in &arguments.vary {
         command += &format!(" --vary {}", quoted(vary));
@@ -204,8 +196,5 @@ fn replay_command(arguments: &Arguments, path: &Path) -> String {
         command += &format!(" --metric {}", names.join(","));
     }
     command += &format!(" --scheme {}{}", arguments.scheme.shown().name(), arguments.motion.replay());
-    if arguments.shard != Shard::WHOLE {
-        command += &format!(" --shard {}", arguments.shard);
-    }
     format!("{command} --out {}", quoted(&path.display().to_string()))
 }

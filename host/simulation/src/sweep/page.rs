@@ -2,9 +2,9 @@
 //! result. Equal sweeps give equal pages.
 
 use super::grid::Grid;
-use super::journal::Points;
 use super::manifest::Manifest;
 use super::pictures::{self, MetricPictures};
+use super::points::Points;
 use super::table::{Status, SweepTable};
 use report::document::{
     Block, Document, Text, code, facts, notes, number, numbers, picture, quiet, row, section, strong, table, text,

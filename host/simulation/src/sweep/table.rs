@@ -1,9 +1,9 @@
 //! Result of a sweep as numbers on its grid, for the pictures.
 
 use super::grid::Grid;
-use super::journal::Points;
 use super::manifest::Manifest;
 use super::metrics::Metric;
+use super::points::Points;
 
 /// Status of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

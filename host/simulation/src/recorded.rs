@@ -37,16 +37,16 @@ pub struct Row {
 }
 
 impl RecordedMotion {
-    /// Reads a file; the time of the first row becomes 0.
-    pub fn read(path: &Path) -> Outcome<Self> {
-        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
+    /// Reads the text of a file.
+    pub fn text(path: &Path) -> Outcome<String> {
+        input::text(path, input::LARGEST_RECORDED).map_err(|why| {
             Failure::new(format!("cannot read the motion {}: {why}", path.display()))
                 .with_help("`file` in [profile] is looked for beside the test file")
-        })?;
-        Self::parse(&text).map_err(|failure| failure.while_doing(path.display()))
+        })
     }
 
-    fn parse(text: &str) -> Outcome<Self> {
+    /// Parses the text of a file; the time of the first row becomes 0.
+    pub fn parse(text: &str) -> Outcome<Self> {
         let header_help = "the first line names the columns: time_s,position_rad and, if wanted, load_torque_N_m";
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let lines = (1u64..).zip(text.lines().map(str::trim));

@@ -216,3 +216,109 @@ impl<'tables, T: Real> Probe<'tables, T> {
         ProbeProgress::Done(Estimate { value: width * quarter, variance, valid: true })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::Source;
+    use crate::observer::design::{design_usual_probe, observer_settings};
+
+    /// Usual probe of Q1, whose motor has 2.5 N m.
+    fn q1() -> ProbeTable<f64> {
+        let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+        let settings = observer_settings(&q1.surroundings);
+        design_usual_probe(&q1.parameters, &settings).expect("tables").expect("a probe")
+    }
+
+    /// Estimates of a motor at a speed [rad/s].
+    fn turning(speed: f64) -> Estimates<f64> {
+        let mut estimates = Estimates { source: Source::Both, ..Estimates::default() };
+        estimates.motor.speed = speed;
+        estimates
+    }
+
+    /// Probe that has found its motor at rest.
+    fn begun(table: &ProbeTable<f64>) -> Probe<'_, f64> {
+        let mut probe = Probe::new(table);
+        probe.step(&turning(0.0));
+        probe
+    }
+
+    /// Periods at a speed until a condition holds.
+    fn periods_until(probe: &mut Probe<'_, f64>, speed: f64, holds: impl Fn(&Probe<'_, f64>) -> bool) -> Option<u32> {
+        (1..20_000).find(|_| {
+            probe.step(&turning(speed));
+            holds(probe)
+        })
+    }
+
+    #[test]
+    fn probe_ends_after_half_a_second() {
+        let table = q1();
+        let refused = ProbeProgress::Refused(ProbeRefusal::NotHeld);
+        assert_eq!(periods_until(&mut begun(&table), 10.0, |probe| probe.progress == refused), Some(5001));
+    }
+
+    #[test]
+    fn torque_settles_for_50_ms() {
+        let table = q1();
+        // Then 10 ms of rest are averaged.
+        assert_eq!(periods_until(&mut begun(&table), 0.0, |probe| probe.still == 1), Some(500));
+    }
+
+    #[test]
+    fn rest_is_averaged_over_10_ms() {
+        let table = q1();
+        let mut probe = begun(&table);
+        (0..1000).for_each(|_| _ = probe.step(&turning(10.0)));
+        assert_eq!(periods_until(&mut probe, 0.0, |probe| probe.rest == 1), Some(100));
+    }
+
+    #[test]
+    fn torque_rises_in_12_ms() {
+        let table = q1();
+        let mut probe = begun(&table);
+        // The first period has risen, too.
+        (1..120).for_each(|_| _ = probe.step(&turning(0.0)));
+        assert!((probe.torque / table.torque - 0.632).abs() < 1e-3, "{}", probe.torque);
+    }
+
+    #[test]
+    fn damping_stops_the_motor_in_3_ms() {
+        let table = q1();
+        let torque = |speed: f64| begun(&table).step(&turning(speed)).0;
+        // Of Q1's motor, 2.51e-4 kg m^2, at 50 Hz.
+        assert!((torque(0.0) - torque(1.0) - 0.0788).abs() < 1e-3, "{}", torque(0.0) - torque(1.0));
+    }
+
+    #[test]
+    fn usual_torque_is_a_fifth_of_the_limit() {
+        // The single torque is half of the probe's.
+        assert!((q1().torque - 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn usual_torque_is_eight_uncertainties() {
+        let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+        let settings = crate::observer::design::ObserverSettings {
+            torque_uncertainty: 0.1,
+            ..observer_settings(&q1.surroundings)
+        };
+        let table = design_usual_probe::<f64>(&q1.parameters, &settings).expect("tables").expect("a probe");
+        assert!((table.torque - 0.4).abs() < 1e-12, "{}", table.torque);
+    }
+
+    #[test]
+    fn passes_that_differ_by_an_eighth_are_unsteady() {
+        let table = q1();
+        // Distances between the flanks in motor angles [rad]: of the first pass, and the last less the first.
+        let is_unsteady = |part: f64| {
+            let width = 0.02;
+            let again = part * width;
+            let drive = width - 0.5 * again;
+            let angles = [drive, drive, 0.0, 0.0, drive + again, drive + again];
+            Probe { angles, ..Probe::new(&table) }.result() == ProbeProgress::Refused(ProbeRefusal::Unsteady)
+        };
+        assert_eq!([0.12, 0.13, -0.12, -0.13].map(is_unsteady), [false, true, false, true]);
+    }
+}

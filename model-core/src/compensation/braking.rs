@@ -317,4 +317,15 @@ mod tests {
         };
         assert!(is_linear(0.89) && !is_linear(0.91));
     }
+
+    #[test]
+    fn demand_adds_acceleration_damper_and_load() {
+        let (tables, load) = (tables(), LoadModel::of_known(2.0, 0.0));
+        let tracking = TrackingError { error: 0.0, rate: 0.01, acceleration: 0.0 };
+        let demand = |time: f64| limit(2.0, 0.0).demand(&tables, &load, &tracking, &set_point(0.0, 0.5), time);
+        // 3 kg m^2 at 0.5 rad/s^2, a damper of 120 N m s/rad at 0.01 rad/s, and a weight of 2 N m.
+        assert!((demand(0.0) - 4.7).abs() < 1e-12, "{}", demand(0.0));
+        // The error grows by 0.01 mrad in 1 ms and closes at 10/s.
+        assert!((demand(1e-3) - 4.712).abs() < 1e-12, "{}", demand(1e-3));
+    }
 }

@@ -270,7 +270,7 @@ fn creeps<T: Real>(speed: T) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compensation::test_bench::{state, tables};
+    use crate::compensation::test_bench::{q1, state, tables};
 
     /// Estimates with a load torque [N m].
     fn measured(torque: f64) -> Estimates<f64> {
@@ -425,5 +425,64 @@ mod tests {
         // 0.99^69 is a half: 0.7 transients of 100 periods.
         assert_eq!(friction(68), 1.0);
         assert!(friction(69) > 1.0);
+    }
+
+    /// Model of Q1's load that is known not to swing, of a link at rest without a load.
+    fn steady() -> LoadModel<f64> {
+        let (tables, mut load) = (q1(), LoadModel::new());
+        // A second of 10,000 periods.
+        (0..11_000).for_each(|_| load.update(&tables, &measured(0.0), &state(), true));
+        load
+    }
+
+    #[test]
+    fn gravity_torque_follows_in_3_ms() {
+        let (tables, mut load) = (q1(), steady());
+        // 3.2 ms: a time constant.
+        (0..32).for_each(|_| load.update(&tables, &measured(1.0), &state(), true));
+        assert!((load.gravity_torque() - 0.637).abs() < 0.02, "{}", load.gravity_torque());
+    }
+
+    #[test]
+    fn friction_is_followed_in_100_ms() {
+        let (tables, mut load) = (q1(), steady());
+        let mut shake = |friction: f64, periods: u32| {
+            for period in 0..periods {
+                let direction = if period % 2 == 0 { 1.0 } else { -1.0 };
+                load.update(&tables, &measured(friction * direction), &moving(0.1 * direction), true);
+            }
+            load.friction()
+        };
+        shake(0.0, 20_000);
+        let found = shake(1.0, 1000);
+        assert!((found - 0.632).abs() < 0.02, "{found}");
+    }
+
+    #[test]
+    fn load_changes_by_the_motor_limit_in_30_ms() {
+        let (tables, mut load) = (q1(), LoadModel::new());
+        load.rate = 499.0;
+        load.update(&tables, &measured(15.0), &moving(0.1), true);
+        // 15 N m in 30 ms.
+        assert!((load.gravity_rate() - 500.0).abs() < 1e-9, "{}", load.gravity_rate());
+    }
+
+    #[test]
+    fn rate_of_an_uncarried_load_decays_in_100_ms() {
+        let (tables, mut load) = (q1(), LoadModel::new());
+        load.rate = 1.0;
+        let open = LoopState { teeth_open: true, ..moving(0.1) };
+        (0..1000).for_each(|_| load.update(&tables, &measured(0.0), &open, true));
+        assert!((load.gravity_rate() - 0.368).abs() < 1e-3, "{}", load.gravity_rate());
+    }
+
+    #[test]
+    fn friction_is_full_from_10_mrad_per_s() {
+        let mut load = LoadModel::of_known(0.0, 2.0);
+        let [below, above] = [9e-3, 11e-3].map(|speed| {
+            load.estimate_speed(&q1(), &moving(speed));
+            load.friction_torque()
+        });
+        assert!((below - 1.8).abs() < 1e-9 && above == 2.0, "{below} {above}");
     }
 }

@@ -372,4 +372,11 @@ mod tests {
         let [within, beyond] = [199e-6, 201e-6].map(half_gap);
         assert!((within - 199e-6).abs() < 1e-12 && (beyond - 200e-6).abs() < 1e-12, "{within} {beyond}");
     }
+
+    #[test]
+    fn planned_friction_is_full_from_1_mrad_per_s() {
+        let direction = |speed: f64| friction_direction(&q1(), speed);
+        let [below, above] = [0.9e-3, 1.1e-3].map(direction);
+        assert!((below - 0.9).abs() < 1e-9 && above == 1.0, "{below} {above}");
+    }
 }

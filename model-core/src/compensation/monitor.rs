@@ -255,7 +255,7 @@ fn decrease<T: Real>(value: T, by: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compensation::test_bench::{HALF_GAP, state, tables};
+    use crate::compensation::test_bench::{HALF_GAP, q1, state, tables};
 
     fn input(planned: f64) -> MonitorInput<f64> {
         MonitorInput { planned, load: 0.0, has_error: true, external_impact: false }
@@ -381,5 +381,54 @@ mod tests {
         assert!(monitor.is_tripped());
         (0..3).for_each(|_| monitor.step(&tables, &state(), &input(0.0), None));
         assert!(!monitor.is_tripped());
+    }
+
+    #[test]
+    fn slow_load_follows_in_40_ms() {
+        let (tables, mut monitor) = (q1::<f64>(), LoopMonitor::new(&q1()));
+        // 133 judgements of 3 periods; two stages follow 1 - 2/e in a time constant.
+        (0..133).for_each(|_| _ = monitor.demand(&tables, &MonitorInput { load: 1.0, ..input(0.0) }));
+        assert!((monitor.load[1] - 0.264).abs() < 0.01, "{}", monitor.load[1]);
+    }
+
+    #[test]
+    fn error_of_a_third_of_the_half_gap_is_calm() {
+        let left = |part: f64| {
+            let mean_square = f64::powi(part * HALF_GAP, 2);
+            let mut monitor = LoopMonitor { unexplained: 1.0, mean_square, ..LoopMonitor::new(&q1()) };
+            monitor.decay_count(&q1(), &state(), &input(0.0), 3e-3);
+            monitor.unexplained
+        };
+        assert!((left(0.34) - 0.94).abs() < 1e-12 && (left(0.36) - 0.997).abs() < 1e-12);
+    }
+
+    #[test]
+    fn squared_error_is_averaged_over_150_ms() {
+        let (tables, mut monitor) = (q1::<f64>(), LoopMonitor { judged_time: 6.0, ..LoopMonitor::new(&q1()) });
+        let erring = LoopState { error: 1.0, ..state() };
+        // 500 judgements of 3 periods.
+        (0..500).for_each(|_| monitor.update_mean_square(&tables, &erring));
+        assert!((monitor.mean_square - 0.632).abs() < 1e-3, "{}", monitor.mean_square);
+    }
+
+    #[test]
+    fn demand_permits_three_tenths_of_its_deflection() {
+        let tables = q1::<f64>();
+        let hunts = |part: f64| {
+            let monitor = LoopMonitor { mean_square: f64::powi(part * HALF_GAP, 2), ..LoopMonitor::new(&tables) };
+            // The demand deflects the spring of the loop by the half-gap.
+            monitor.hunts(&tables, &state(), &input(0.0), tables.law.position * HALF_GAP)
+        };
+        assert!(!hunts(1.79) && hunts(1.81));
+    }
+
+    #[test]
+    fn plain_control_lasts_at_most_120_s() {
+        let (tables, mut monitor) = (q1::<f64>(), LoopMonitor::new(&q1()));
+        let times = [(); 4].map(|()| {
+            monitor.trip(&tables);
+            monitor.remaining_trip
+        });
+        assert_eq!(times, [10.0, 40.0, 120.0, 120.0]);
     }
 }

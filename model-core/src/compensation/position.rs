@@ -555,4 +555,12 @@ mod tests {
         (0..3000).for_each(|_| law.update_deadband(&tables, true, true, 0.0, HALF_GAP));
         assert!((law.deadband / (8.0 * FIRST) - 0.99).abs() < 1e-3, "{}", law.deadband / FIRST);
     }
+
+    #[test]
+    fn jerk_is_followed_eight_times_faster() {
+        let (tables, mut law) = (tables(), PositionLaw::new());
+        let steps = [0.0, 1.0].map(|acceleration| law.trend(&tables, &motion(0.0, acceleration), None).acceleration);
+        // The measured demand follows 3 % of a change in a period.
+        assert!(steps[0] == 0.0 && (steps[1] - 0.24).abs() < 1e-12, "{steps:?}");
+    }
 }

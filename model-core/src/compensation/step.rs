@@ -327,4 +327,15 @@ mod tests {
             assert!(output.torque.is_finite() && output.demand == 0.0, "{acceleration}: {}", output.torque);
         }
     }
+
+    #[test]
+    fn error_of_a_radian_is_not_judged() {
+        let tables = tables();
+        let command = command(0.0);
+        let is_judged = |error: f64| {
+            let state = LoopState { error, ..crate::compensation::test_bench::state() };
+            Compensation::new(&tables).monitor_input(&state, &command.by_reference()).has_error
+        };
+        assert_eq!([0.99, -0.99, 1.01, -1.01].map(is_judged), [true, true, false, false]);
+    }
 }

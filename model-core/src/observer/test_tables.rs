@@ -14,8 +14,9 @@ use crate::numbers::Real;
 /// Prior standard deviation of each parameter.
 pub const DEVIATION: f32 = 1e-3;
 
-/// Tables of Q1, designed once for all tests.
-static Q1: LazyLock<ObserverTables<f32>> = LazyLock::new(q1);
+/// Tables of Q1 in both precisions, designed once for all tests: 10 kHz, a motor of 2.5 N m, a half-gap of 80 um.
+pub static Q1: LazyLock<ObserverTables<f32>> = LazyLock::new(q1);
+pub static Q1_DOUBLE: LazyLock<ObserverTables<f64>> = LazyLock::new(q1);
 
 /// Tables of Q1.
 pub fn q1<T: Real>() -> ObserverTables<T> {

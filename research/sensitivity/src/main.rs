@@ -10,7 +10,7 @@ mod page;
 mod runs;
 mod unit_tests;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Command, FromArgMatches};
@@ -30,7 +30,8 @@ use unit_tests::UnitTests;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   cargo run -p sensitivity                              every threshold that the page lacks
-  cargo run -p sensitivity -- --only CONTACT.persistence --again")]
+  cargo run -p sensitivity -- --only CONTACT.persistence --again
+  cargo run -p sensitivity -- --unit-tests              after new unit tests: the thresholds that none holds yet")]
 struct Arguments {
     /// Measures only this threshold; may be repeated
     #[arg(long, value_name = "NAME")]
@@ -44,6 +45,9 @@ struct Arguments {
     /// Measures again what the page already has
     #[arg(long)]
     again: bool,
+    /// Runs only the unit tests, for thresholds that no unit test holds yet; keeps the results of closed loops
+    #[arg(long, conflicts_with = "seeds")]
+    unit_tests: bool,
     /// Runs the test files into this folder; for the child processes of this program
     #[arg(long, value_name = "FOLDER", hide = true)]
     run_into: Option<PathBuf>,
@@ -70,31 +74,28 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
             .with_help("docs/reference/sensitivity.md lists the names"));
     }
     let path = arguments.out.clone().unwrap_or_else(|| workspace().join("docs/reference/sensitivity.md"));
+    let is_wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
+    let work: Vec<&Threshold> = thresholds.iter().filter(|threshold| is_wanted(threshold.name)).collect();
+    if arguments.unit_tests {
+        let mut page = Page::open_without_runs(&path, &thresholds)?;
+        let is_unheld = |row: Row| arguments.again || row.lacks_unit_tests() || row.unit_tests == unit_tests::NONE;
+        let unheld = work.into_iter().filter(|threshold| is_unheld(page.row(threshold.name))).collect();
+        run_unit_tests(&mut page, &path, unheld, progress)?;
+        progress.clear();
+        return output::print(&format!("table: {}\n", path.display()));
+    }
     progress.stage("runs with the tuned thresholds");
     let base = runs::measure(None, arguments.seeds)?;
     let mut page = Page::open(&path, &thresholds, &base, arguments.seeds);
-    let is_wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
-    let work: Vec<&Threshold> = thresholds.iter().filter(|threshold| is_wanted(threshold.name)).collect();
     if arguments.again {
         work.iter().for_each(|threshold| page.set(threshold.name, Row::default()));
     }
-    // The unit tests first: all of them take as long as the closed loops of a few thresholds.
     let lacks = |page: &Page, lacks: fn(&Row) -> bool| -> Vec<&Threshold> {
         work.iter().copied().filter(|threshold| lacks(&page.row(threshold.name))).collect()
     };
-    progress.stage("unit tests with the tuned thresholds");
+    // The unit tests first: all of them take as long as the closed loops of a few thresholds.
     let untested = lacks(&page, Row::lacks_unit_tests);
-    let unit_tests = (!untested.is_empty()).then(UnitTests::build).transpose()?;
-    if let Some(tests) = unit_tests {
-        progress.run("unit tests", untested.len() as u64);
-        for threshold in untested {
-            let row = Row { unit_tests: tests.cell(threshold)?, ..page.row(threshold.name) };
-            progress.print_above(&format!("{}: {}", threshold.name, row.unit_tests));
-            page.set(threshold.name, row);
-            write_text(&path, &page.text())?;
-            progress.advance(1);
-        }
-    }
+    run_unit_tests(&mut page, &path, untested, progress)?;
     let unrun = lacks(&page, Row::lacks_loops);
     progress.run("closed loops", unrun.len() as u64);
     for threshold in unrun {
@@ -107,6 +108,24 @@ fn study(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     write_text(&path, &page.text())?;
     progress.clear();
     output::print(&format!("table: {}\n", path.display()))
+}
+
+/// Finds the unit tests that fail under each of the thresholds; the page is on disk after each threshold.
+fn run_unit_tests(page: &mut Page, path: &Path, thresholds: Vec<&Threshold>, progress: &Progress) -> Outcome<()> {
+    if thresholds.is_empty() {
+        return Ok(());
+    }
+    progress.stage("unit tests with the tuned thresholds");
+    let tests = UnitTests::build()?;
+    progress.run("unit tests", thresholds.len() as u64);
+    for threshold in thresholds {
+        let row = Row { unit_tests: tests.cell(threshold)?, ..page.row(threshold.name) };
+        progress.print_above(&format!("{}: {}", threshold.name, row.unit_tests));
+        page.set(threshold.name, row);
+        write_text(path, &page.text())?;
+        progress.advance(1);
+    }
+    Ok(())
 }
 
 /// Cells of the closed loops under a threshold, one for each factor.

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use model_core::numbers::sensitivity::Threshold;
+use report::failure::{Failure, Outcome};
 
 use crate::runs::{FILES, Figures, digest_of};
 
@@ -41,6 +42,9 @@ impl Row {
     }
 }
 
+/// End of the lines above the table.
+const DISCARDS: &str = "Another digest discards all rows.\n\n";
+
 /// Cell without a result.
 const NOT_RUN: &str = "not run";
 
@@ -64,6 +68,17 @@ impl<'t> Page<'t> {
         page
     }
 
+    /// Existing page with all its rows, whatever runs it was measured against.
+    pub fn open_without_runs(path: &Path, thresholds: &'t [Threshold]) -> Outcome<Self> {
+        let text = fs::read_to_string(path).unwrap_or_default();
+        let Some(head) = text.find(DISCARDS).map(|at| text[..at + DISCARDS.len()].to_owned()) else {
+            return Err(Failure::new(format!("{} is no page of this command", path.display()))
+                .with_help("without --unit-tests the command writes a page"));
+        };
+        let rows = thresholds.iter().filter_map(|threshold| kept_row(threshold, &text)).collect();
+        Ok(Self { thresholds, head, rows })
+    }
+
     /// Cells of a threshold.
     pub fn row(&self, name: &str) -> Row {
         self.rows.get(name).cloned().unwrap_or_default()
@@ -77,11 +92,10 @@ impl<'t> Page<'t> {
     /// Text of the page.
     pub fn text(&self) -> String {
         let mut text = self.head.clone();
-        let measured = self.rows.values().filter(|row| !row.lacks_unit_tests() && !row.lacks_loops());
-        let held = measured.clone().filter(|row| row.is_held()).count();
+        let held = self.rows.values().filter(|row| row.is_held()).count();
+        let run = self.rows.values().filter(|row| !row.lacks_loops()).count();
         text += &format!(
-            "{} of {} thresholds are measured; {held} of them move a figure or fail a unit test.\n",
-            measured.count(),
+            "{held} of {} thresholds move a figure or fail a unit test. Closed loops have run for {run}.\n",
             self.thresholds.len()
         );
         let mut folder = "";
@@ -134,9 +148,7 @@ the test files, not for each seed. Thresholds of the wiring check are left out, 
 
 Files, {seeds_text}: {}.
 
-{} Another digest discards all rows.
-
-",
+{} {DISCARDS}",
         files.join(", "),
         digest_line(base),
         seeds_text = if seeds == 1 { "seed 1".to_owned() } else { format!("seeds 1 to {seeds}") },
@@ -169,6 +181,7 @@ mod tests {
         assert!(again.row("A.b").lacks_loops());
         let other = [threshold("A.a", "3")];
         assert!(Page::open(&path, &other, &Vec::new(), 1).row("A.a").lacks_loops(), "another value is measured again");
+        assert_eq!(Page::open_without_runs(&path, &thresholds).unwrap().text(), page.text());
         fs::remove_file(&path).unwrap();
     }
 
@@ -183,7 +196,10 @@ mod tests {
         page.set("A.a", row("t2: rms 1 to 2", "none"));
         page.set("A.b", row("stays 2: rounded", "none"));
         page.set("A.c", row("moves nothing", "`a::falls`"));
-        assert!(page.text().contains("3 of 4 thresholds are measured; 2 of them move a figure or fail a unit test."));
+        page.set("A.d", row(NOT_RUN, "`a::falls`"));
+        assert!(
+            page.text().contains("3 of 4 thresholds move a figure or fail a unit test. Closed loops have run for 3.")
+        );
     }
 
     /// Every field of a `thresholds!` in the core's sources is in the list.

@@ -12,7 +12,7 @@ use report::workspace::workspace;
 use serde_json::Value;
 
 /// Cell of a threshold that no unit test holds.
-const NONE: &str = "none";
+pub const NONE: &str = "none";
 
 /// Program with the unit tests.
 pub struct UnitTests {

@@ -169,3 +169,78 @@ fn phase_margin(body: &JointBody, settings: &CompensationSettings, rate: f64, ba
     let lost = libm::atan(torque_lag * crossover) + crossover * period * (0.5 + torque_delay);
     libm::atan2(ahead(crossover), spring) - lost
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Joint of two equal inertias without a gap.
+    fn body() -> JointBody {
+        JointBody {
+            gear: 6.0,
+            lever: 0.02,
+            half_backlash: 0.0,
+            motor: 0.01,
+            load: 0.01,
+            stiffness: 1e6,
+            strike_impedance: 1.0,
+        }
+    }
+
+    /// Settings without delays.
+    fn settings(control_rate: u32, bandwidth: f64) -> CompensationSettings {
+        CompensationSettings {
+            control_rate,
+            bandwidth,
+            torque_limit: 2.5,
+            peak_torque: None,
+            efficiency: 1.0,
+            cogging_periods: 84,
+            torque_delay: 0.0,
+            torque_lag: 0.0,
+            motor_friction: 0.0,
+            load_friction: 0.0,
+        }
+    }
+
+    #[test]
+    fn default_bandwidth_of_q1_is_60_rad_per_s() {
+        let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+        assert_eq!(good_bandwidth(&q1.parameters, &q1.surroundings), Ok(60.0));
+    }
+
+    #[test]
+    fn time_constant_has_33_periods() {
+        let is_permitted = |bandwidth: f64| check_rate(&body(), &settings(3300, bandwidth)).is_ok();
+        assert!(is_permitted(99.9) && !is_permitted(100.1));
+    }
+
+    #[test]
+    fn phase_margin_is_3_degrees() {
+        // Lags of the current loop from 4.2 to 4.9 ms: each hundredth of a millisecond costs 0.14 degrees.
+        for hundredths in 420..490 {
+            let torque_lag = 1e-5 * f64::from(hundredths);
+            let settings = CompensationSettings { torque_lag, ..settings(10_000, 60.0) };
+            let margin = phase_margin(&body(), &settings, 10_000.0, 60.0) * 180.0 / PI;
+            assert_eq!(check_rate(&body(), &settings).is_ok(), margin >= 3.0, "{margin} degrees");
+        }
+    }
+
+    #[test]
+    fn first_swing_is_five_times_the_bandwidth() {
+        // Two inertias of 0.01 kg m^2 swing with 500 rad/s.
+        let slow = JointBody { stiffness: 1250.0, ..body() };
+        let (widest, limit) = joint_bandwidth_limit(&slow, &settings(10_000, 60.0));
+        assert!((widest - 100.0).abs() < 1.0 && matches!(limit, BandwidthLimit::Swing(_)), "{widest} {limit:?}");
+    }
+
+    #[test]
+    fn control_rates_end_at_100_khz() {
+        let lowest = |bandwidth: f64| match check_rate(&body(), &settings(10_000, bandwidth)) {
+            Err(DesignError::ControlTooSlow { lowest, .. }) => lowest,
+            other => panic!("{other:?}"),
+        };
+        // 33 periods per time constant need 99 and 102 kHz.
+        assert_eq!([3000.0, 3090.0].map(lowest), [Some(99_000), None]);
+    }
+}

@@ -116,12 +116,15 @@ pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> Curren
 
 #[cfg(test)]
 mod tests {
-    use super::{Body, drive_filter, drive_lag};
+    use super::{Body, drive_filter, drive_lag, late_gain, load_filter};
     use crate::observer::design::settings::{EncoderSettings, ObserverSettings};
 
-    #[test]
-    fn drive_lag_equals_lag_of_filter() {
-        let body = Body {
+    /// Control period [s].
+    const STEP: f64 = 1e-4;
+
+    /// Joint of ratio 6 that swings against its motor with 170 Hz.
+    fn body() -> Body {
+        Body {
             sun_lever: 7e-3,
             output_lever: 42e-3,
             ratio: 6.0,
@@ -131,10 +134,13 @@ mod tests {
             compliance: 1.8e-7,
             mesh_compliance: 7e-9,
             transmission_error: 6e-6,
-        };
+        }
+    }
+
+    fn settings() -> ObserverSettings {
         let encoder =
             EncoderSettings { counts_per_turn: 1 << 14, wraps_at: 1 << 14, absolute: true, harmonic_error: 0.0 };
-        let settings = ObserverSettings {
+        ObserverSettings {
             control_rate: 10_000,
             clock_rate: 10_000_000,
             motor_encoder: encoder,
@@ -152,10 +158,19 @@ mod tests {
             compliance_uncertainty: 0.3,
             skew: 0.0,
             skew_uncertainty: 0.0,
-        };
-        let step = 1e-4;
-        let count = core::f64::consts::TAU / f64::from(encoder.counts_per_turn);
-        let filter = drive_filter(&body, &settings, count * count / 12.0, step);
+        }
+    }
+
+    /// Variance of a rounded motor count [rad^2].
+    fn rounding() -> f64 {
+        let count = core::f64::consts::TAU / f64::from(settings().motor_encoder.counts_per_turn);
+        count * count / 12.0
+    }
+
+    #[test]
+    fn drive_lag_equals_lag_of_filter() {
+        let (body, step) = (body(), STEP);
+        let filter = drive_filter(&body, &settings(), rounding(), step);
         let (inertia, gain) = (body.motor_inertia, &filter.gain);
         let [mut angle, mut speed, mut disturbance_torque] = [0.0; 3];
         let mut time = 0.0;
@@ -171,5 +186,39 @@ mod tests {
         }
         let lag = time - disturbance_torque;
         assert!(lag > step && (drive_lag(&body, &filter, step) / lag - 1.0).abs() < 1e-6, "it lags by {lag} s");
+    }
+
+    #[test]
+    fn half_swings_below_20_periods_are_one() {
+        // Gain of the taken torque of a joint with a half swing of this many periods.
+        let gain = |periods: f64| {
+            let body = body();
+            let compliance =
+                body.compliance * (periods * STEP * body.contact_frequency() / core::f64::consts::PI).powi(2);
+            drive_filter(&Body { compliance, ..body }, &settings(), rounding(), STEP).gain[2]
+        };
+        assert!(gain(19.0) == gain(11.0) && gain(21.0) > gain(19.0), "{} {}", gain(21.0), gain(19.0));
+    }
+
+    #[test]
+    fn drive_side_lags_by_600_us() {
+        // The mesh torque may change by a fifth of the motor's limit in half a swing of 2.9 ms.
+        let lag = drive_lag(&body(), &drive_filter(&body(), &settings(), rounding(), STEP), STEP);
+        assert!((lag - 0.58e-3).abs() < 0.02e-3, "{lag}");
+    }
+
+    #[test]
+    fn impact_sets_the_gain_of_the_link_speed() {
+        // An impact leaves an error of 5 % of the motor's limit for 1 ms; the load changes by the limit in 3 s.
+        let filter = load_filter(&body(), &settings(), rounding(), STEP);
+        assert!((filter.gain[1] - 29.6).abs() < 0.5, "{} 1/s", filter.gain[1]);
+    }
+
+    #[test]
+    fn late_readings_decay_with_1000_per_second() {
+        let (gain, inertia) = (late_gain(&body(), STEP), body().motor_inertia);
+        // The trace of the filter's matrix is the sum of its three poles.
+        let trace = 3.0 - gain[0] - STEP * gain[1] + 0.5 * STEP * STEP / inertia * gain[2];
+        assert!((trace - 3.0 * libm::exp(-0.1)).abs() < 1e-9, "{trace}");
     }
 }

@@ -374,3 +374,64 @@ fn identity(joint: &JointParameters, settings: &ObserverSettings) -> u64 {
     let counted = words.into_iter().fold(named, |running, word| digest::chain(running, word.into()));
     digest::chain(counted, geometry.sun_base_radius.to_bits())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::design::observer_settings;
+
+    /// Surroundings of Q1, with a motor of 1 N m.
+    fn settings() -> ObserverSettings {
+        let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+        ObserverSettings { torque_limit: 1.0, ..observer_settings(&q1.surroundings) }
+    }
+
+    /// Joint without a gap and with levers of 1 m, whose motor of 1 g m^2 turns a link of 1 kg m^2.
+    fn body() -> Body {
+        Body {
+            sun_lever: 1.0,
+            output_lever: 1.0,
+            ratio: 1000.0,
+            motor_inertia: 1e-3,
+            load_inertia: 1.0,
+            half_backlash: 0.0,
+            compliance: 1e-9,
+            mesh_compliance: 1e-9,
+            transmission_error: 0.0,
+        }
+    }
+
+    /// Length of a block in periods of 0.1 ms, for the angle of a motor count [rad].
+    fn block(body: &Body, motor_count: f64) -> u16 {
+        response::<f64>(body, &settings(), motor_count, 1e-4).block
+    }
+
+    #[test]
+    fn block_moves_the_motor_by_24_counts() {
+        // 1 N m turns 1.001 g m^2 by 0.24 rad, from block to block of 15.5 ms.
+        assert_eq!(block(&body(), 0.01), 155);
+    }
+
+    #[test]
+    fn block_moves_the_motor_by_four_gaps() {
+        assert_eq!(block(&Body { half_backlash: 0.015, ..body() }, 0.0), 155);
+    }
+
+    #[test]
+    fn block_lasts_half_a_swing() {
+        // 1 g m^2 swing with a period of 20 ms.
+        let compliance = 1.0 / (1e-3 * (TAU / 20e-3_f64).powi(2));
+        assert_eq!(block(&Body { compliance, ..body() }, 0.0), 100);
+    }
+
+    #[test]
+    fn block_lasts_from_2_to_30_ms() {
+        assert_eq!([0.0, 1.0].map(|count| block(&body(), count)), [20, 300]);
+    }
+
+    #[test]
+    fn block_lasts_eight_periods() {
+        // 2 ms have two periods at 1 kHz.
+        assert_eq!(response::<f64>(&body(), &settings(), 0.0, 1e-3).block, 8);
+    }
+}

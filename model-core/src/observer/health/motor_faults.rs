@@ -313,7 +313,7 @@ impl<T: Real> MotorFaultDetector<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observer::test_tables::{current, drive, estimator, observer, supervisor};
+    use crate::observer::test_tables::{Q1, current, drive, estimator, observer, supervisor};
 
     /// Motor side under an air-gap torque [N m].
     fn under(torque: f32) -> DriveSide<f32> {
@@ -418,5 +418,71 @@ mod tests {
         };
         // 1.1 N m would have moved a free motor by 1 + ... + 5 = 15 counts, and by 21 counts a period later.
         assert!(!is_outrun(5) && is_outrun(6));
+    }
+
+    /// Fresh reading of Q1's motor after a period in which its counts moved.
+    fn reading(by: i32) -> SensorReadings<f32> {
+        SensorReadings {
+            command: 0.0,
+            motor: CountChange::By(by),
+            motor_travel: 0.0,
+            motor_interval: Q1.clock.period,
+            motor_age: 0,
+            motor_sample_age: SampleAge::Fresh,
+            output: None,
+            output_travel: 0.0,
+            output_age: 0,
+            output_interval: 0,
+            torque_known: true,
+            out_of_time: false,
+        }
+    }
+
+    /// First reading of an excluded encoder with a state, if its counts move by `by` in each period of 0.1 ms.
+    fn readings_until(state: RecoveryState, by: i32) -> Option<u32> {
+        let (side, mut detector) = (under(0.0), MotorFaultDetector::default());
+        let table = &Q1.supervisor;
+        let limits = MotorMotionLimits { table, drive: &side, unknown_torque: 0.0, link_rate: None };
+        detector.exclude(MotorFault::Frozen);
+        (1..2000).find(|_| {
+            let status = detector.check_reading(&Q1, &reading(by), &limits);
+            status == MotorReadingStatus::Recovering(state)
+        })
+    }
+
+    #[test]
+    fn plausible_for_20_ms_may_be_readmitted() {
+        assert_eq!(readings_until(RecoveryState::Plausible, 1), Some(200));
+        assert_eq!(readings_until(RecoveryState::Plausible, 0), None, "counts that stand still may be frozen");
+    }
+
+    #[test]
+    fn plausible_for_100_ms_is_readmitted() {
+        assert_eq!([1, 0].map(|by| readings_until(RecoveryState::LongPlausible, by)), [Some(1000); 2]);
+    }
+
+    #[test]
+    fn unmoved_for_1_ms_is_standstill() {
+        let (mut detector, table) = (MotorFaultDetector::<f32>::default(), &Q1.supervisor);
+        (0..9).for_each(|_| detector.integrate_free_motion(table, &under(0.0)));
+        assert!(!detector.is_at_standstill(table));
+        detector.integrate_free_motion(table, &under(0.0));
+        assert!(detector.is_at_standstill(table));
+    }
+
+    #[test]
+    fn standstill_keeps_speed_for_3_ms() {
+        let (side, mut detector) = (under(0.0), MotorFaultDetector::default());
+        let table = &Q1.supervisor;
+        let limits = MotorMotionLimits { table, drive: &side, unknown_torque: 0.0, link_rate: None };
+        let mut read = |by: i32| {
+            detector.check_reading(&Q1, &reading(by), &limits);
+            detector.speed_in_counts()
+        };
+        // Half a count per period.
+        (0..200).for_each(|period| _ = read(period % 2));
+        let last = (0..30).map(|_| read(0)).last();
+        assert!(last > Some(0.0));
+        assert_eq!(read(0), 0.0);
     }
 }

@@ -309,8 +309,9 @@ fn classify_deflection<T: Real, const P: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observer::identification::regressors::COMPLIANCE;
     use crate::observer::sensors::latency::SampleAge;
-    use crate::observer::test_tables::observer;
+    use crate::observer::test_tables::{Q1, Q1_DOUBLE, estimator, observer};
 
     #[test]
     fn speed_is_kept_over_five_lost_readings() {
@@ -341,5 +342,50 @@ mod tests {
         };
         assert!(rate_after(6) > 0);
         assert_eq!(rate_after(7), 0);
+    }
+
+    /// Measurement of teeth in the middle of the gap, but for a deflection [m].
+    fn deflected(deflection: f32) -> MeshMeasurement<f32> {
+        MeshMeasurement {
+            flank_shift: 0.0,
+            raw_deflection: 0.0,
+            deflection,
+            rate: 0.0,
+            travel: 0.0,
+            motor_force: 0.0,
+            direction: 0.0,
+            force: 0.0,
+        }
+    }
+
+    #[test]
+    fn impossible_deflection_for_4_ms_is_fault() {
+        let (tables, mut detector) = (&Q1, OutputFaultDetector::default());
+        let estimator = estimator(tables);
+        // 10 mm: no teeth deflect that far. Periods of 0.1 ms.
+        let mut judge = || detector.check_deflection(tables, &deflected(10e-3), &estimator, 10e-3, true);
+        (0..39).for_each(|_| assert_eq!(judge(), None));
+        assert_eq!(judge(), Some(OutputFault::OutOfRange));
+    }
+
+    #[test]
+    fn output_is_silent_after_10_ms() {
+        let (tables, mut detector) = (&Q1, OutputFaultDetector { silent_periods: 100, ..Default::default() });
+        let estimator = estimator(tables);
+        let judge = |detector: &mut OutputFaultDetector<f32>| {
+            detector.check_deflection(tables, &deflected(0.0), &estimator, 0.0, true)
+        };
+        assert_eq!(judge(&mut detector), None);
+        detector.silent_periods += 1;
+        assert_eq!(judge(&mut detector), Some(OutputFault::Silent));
+    }
+
+    #[test]
+    fn margin_is_a_tenth_of_gap_and_wind_up() {
+        let tables = &Q1_DOUBLE;
+        let (compliance, force) = (tables.learner.mean[COMPLIANCE], 2.5 * tables.levers.per_sun);
+        // Half-gap of 80 um, and motor of 2.5 N m.
+        let tenth = 0.1 * (80e-6 + compliance * force);
+        assert!((tables.supervisor.margin / tenth - 1.0).abs() < 1e-9, "{}", tables.supervisor.margin);
     }
 }

@@ -210,6 +210,7 @@ pub fn counts<T: Real>(parts: i32) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observer::test_tables::Q1_DOUBLE;
 
     /// Limits of a shaft that an obstacle stops in 10 periods.
     struct Limits {
@@ -383,5 +384,19 @@ mod tests {
         for by in [i32::MAX, i32::MIN, i32::MAX, 0, i32::MIN] {
             plausibility.check(&limits(), by);
         }
+    }
+
+    /// Reading without a count at which a link of Q1 that turns at a speed [parts of a count per period] cannot have
+    /// stopped.
+    fn freeze_is_found_at(rate: i32) -> Option<u32> {
+        let table = &Q1_DOUBLE.supervisor;
+        let mut plausibility = Plausibility { rate, readings_since_jump: 0, ..Plausibility::default() };
+        (1..100).find(|_| plausibility.check(table, 0) == PlausibilityResult::Implausible)
+    }
+
+    #[test]
+    fn freeze_is_found_from_42_parts_of_a_count() {
+        // A slower link may be stopped within 1 ms, braked by twice the motor's largest torque, and miss two counts.
+        assert_eq!([41, 42].map(freeze_is_found_at), [None, Some(6)]);
     }
 }

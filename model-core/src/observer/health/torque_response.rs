@@ -160,6 +160,7 @@ impl<T: Real> TorqueResponseCheck<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observer::test_tables::Q1;
 
     const BLOCK: u16 = 4;
 
@@ -270,5 +271,16 @@ mod tests {
     fn two_blocks_against_torque_start_test() {
         // The first comparison needs four blocks without an impact.
         assert_eq!(reversed_until(TorqueResponse::Tested).0, 5);
+    }
+
+    #[test]
+    fn quarter_of_the_motor_limit_votes() {
+        // Q1's motor has 2.5 N m.
+        let votes = |torque: f32| {
+            let mut check = TorqueResponseCheck::default();
+            check.vote(&Q1.response, torque, torque);
+            check.votes
+        };
+        assert_eq!([0.62, 0.63, -0.62, -0.63].map(votes), [0, 1, 0, 1]);
     }
 }

@@ -114,3 +114,96 @@ fn load_regressors<T: Real>(table: &CoggingTable<T>, place: T, speed: T) -> [T; 
     let part = -((tangent * tangent) / (real * real + imaginary * imaginary));
     [part * (real * sine - imaginary * cosine), part * (real * cosine + imaginary * sine)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::test_tables::Q1_DOUBLE;
+
+    /// Table of Q1: learning intervals of 1 ms, ripple of 0.02 N m at the motor, 0.12 N m at the link.
+    fn q1() -> &'static CoggingTable<f64> {
+        &Q1_DOUBLE.cogging
+    }
+
+    /// Cogging of a motor that has turned at 1 rad/s on one flank for a second, without a load.
+    fn settled() -> Cogging<f64> {
+        let table = q1();
+        let mut cogging = Cogging::new(table);
+        (0..1000).for_each(|_| cogging.update(table, [0.0, 1.0, 0.0], Some(Flank::Drive)));
+        cogging
+    }
+
+    /// True if an interval at a motor speed updates the estimate of a motor that turned at a speed.
+    fn updates(before: f64, speed: f64) -> bool {
+        let mut cogging = Cogging { speed: before, ..settled() };
+        let variance = cogging.variance;
+        cogging.update(q1(), [0.0, speed, 0.0], Some(Flank::Drive));
+        cogging.variance != variance
+    }
+
+    #[test]
+    fn slow_load_is_removed_in_20_ms() {
+        let mut cogging = settled();
+        (0..20).for_each(|_| cogging.update(q1(), [0.0, 1.0, 1.0], Some(Flank::Drive)));
+        assert!((cogging.slow[0] - 0.632).abs() < 1e-3, "{}", cogging.slow[0]);
+    }
+
+    #[test]
+    fn slow_cogging_is_not_estimated() {
+        // 84 periods per turn advance by 0.6 rad in 20 ms at 0.357 rad/s.
+        assert!(!updates(0.35, 0.35) && updates(0.36, 0.36) && updates(-0.36, -0.36));
+    }
+
+    #[test]
+    fn fast_cogging_is_not_estimated() {
+        // 84 periods per turn advance by 1 rad in 1 ms at 11.9 rad/s.
+        assert!(updates(11.8, 11.8) && !updates(12.0, 12.0) && !updates(-12.0, -12.0));
+    }
+
+    #[test]
+    fn speed_is_averaged_over_50_ms() {
+        let mut cogging = Cogging { speed: 0.0, ..settled() };
+        (0..50).for_each(|_| cogging.update(q1(), [0.0, 1.0, 0.0], Some(Flank::Drive)));
+        assert!((cogging.speed - 0.632).abs() < 1e-3, "{}", cogging.speed);
+    }
+
+    #[test]
+    fn unsteady_speed_is_not_used() {
+        // 2 % of the difference are averaged before the comparison with 30 % of the speed.
+        assert!(updates(0.70, 1.0) && !updates(0.69, 1.0) && updates(1.30, 1.0) && !updates(1.31, 1.0));
+    }
+
+    #[test]
+    fn contact_settles_for_20_intervals() {
+        let table = q1();
+        let is_updated = |intervals: u32| {
+            let mut cogging = Cogging::new(table);
+            // The first interval on the flank begins the time.
+            (0..=intervals).for_each(|_| cogging.update(table, [0.0, 1.0, 0.0], Some(Flank::Back)));
+            cogging.variance != Cogging::new(table).variance
+        };
+        assert!(!is_updated(19) && is_updated(20));
+    }
+
+    #[test]
+    fn five_intervals_count_as_one_measurement() {
+        let mut cogging = Cogging::new(q1());
+        // Prior and noise are alike: one measurement of five intervals weighs one sixth.
+        cogging.correct(q1(), 0.06, [1.0, 0.0]);
+        assert!((cogging.torque[0] - 0.01).abs() < 1e-9, "{}", cogging.torque[0]);
+    }
+
+    #[test]
+    fn cogging_is_at_most_three_ripples() {
+        let mut cogging = Cogging::new(q1());
+        (0..200).for_each(|_| cogging.correct(q1(), 0.4, [1.0, 0.0]));
+        assert!((cogging.torque[0] - 0.36).abs() < 1e-9, "{}", cogging.torque[0]);
+    }
+
+    #[test]
+    fn noise_is_averaged_over_100_ms() {
+        let mut cogging = Cogging { torque: [0.0; 2], variance: [0.0; 3], noise: 1.0, ..Cogging::new(q1()) };
+        (0..100).for_each(|_| cogging.correct(q1(), 0.0, [1.0, 0.0]));
+        assert!((cogging.noise - 0.368).abs() < 1e-3, "{}", cogging.noise);
+    }
+}

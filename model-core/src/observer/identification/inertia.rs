@@ -163,6 +163,7 @@ fn high_pass<T: Real>(slow: &mut [T; 2], part: T, value: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::observer::test_tables::Q1_DOUBLE;
 
     fn table() -> InertiaTable<f32> {
         InertiaTable {
@@ -247,5 +248,65 @@ mod tests {
         };
         assert!(mobility(11.9) > 1.0 && mobility(-11.9) < 1.0);
         assert_eq!((mobility(12.1), mobility(-12.1)), (1.0, 1.0));
+    }
+
+    /// Table of Q1: learning intervals of 1 ms, 15 N m at the link.
+    fn designed() -> &'static InertiaTable<f64> {
+        &Q1_DOUBLE.inertia
+    }
+
+    /// Mobility after one answer to a force [N m], under external torques of a mean square [N^2 m^2].
+    fn corrected(force: f64, answer: f64, external_variance: f64) -> f64 {
+        let mut inertia = LinkInertia { external_variance, ..LinkInertia::new(designed()) };
+        inertia.correct(designed(), &mut LoadSide::default(), force, answer);
+        inertia.mobility
+    }
+
+    #[test]
+    fn mobility_stays_within_90_percent() {
+        let limit = |mobility| limit_mobility(designed(), mobility);
+        assert!((limit(9.0) - 1.9).abs() < 1e-12 && (limit(-9.0) - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn motion_lasts_three_filter_times() {
+        // The high-pass filter of 20 ms settles in 60 ms. Each update averages the external torques.
+        let is_updated = |intervals: i32| {
+            let mut inertia = LinkInertia {
+                one_way_intervals: intervals - 1,
+                external_variance: 1.0,
+                ..LinkInertia::new(designed())
+            };
+            inertia.update(designed(), &mut LoadSide { speed: 10.0, ..LoadSide::default() }, true);
+            inertia.external_variance != 1.0
+        };
+        assert!(!is_updated(59) && is_updated(60));
+    }
+
+    #[test]
+    fn force_below_a_twentieth_shows_nothing() {
+        assert_eq!(corrected(0.74, 0.8, 0.0), 1.0);
+        assert!(corrected(0.76, 0.8, 0.0) > 1.0);
+    }
+
+    #[test]
+    fn pushes_are_averaged_over_half_a_second() {
+        let mut inertia = LinkInertia { external_variance: 1.0, ..LinkInertia::new(designed()) };
+        (0..500).for_each(|_| inertia.correct(designed(), &mut LoadSide::default(), 1.0, 1.0));
+        assert!((inertia.external_variance - 0.368).abs() < 1e-3, "{}", inertia.external_variance);
+    }
+
+    #[test]
+    fn pushes_of_half_the_noise_pause_inertia() {
+        // Noise of 0.32 N m in the filter and of 1 % of the motor's limit: a mean square of 0.127 N^2 m^2.
+        assert!(corrected(5.0, 6.0, 0.061) > 1.0);
+        assert_eq!(corrected(5.0, 6.0, 0.066), 1.0);
+    }
+
+    #[test]
+    fn ten_intervals_count_as_one_answer() {
+        // Prior of 0.09, ten times the noise of 0.127 N^2 m^2.
+        let gain = 0.09 * 5.0 / (1.27 + 0.09 * 25.0);
+        assert!((corrected(5.0, 6.0, 0.0) - 1.0 - gain).abs() < 1e-3, "{}", corrected(5.0, 6.0, 0.0));
     }
 }

@@ -245,7 +245,8 @@ impl<T: Real> Uncertainty<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observer::test_tables::observer;
+    use crate::observer::identification::regressors::PLAIN;
+    use crate::observer::test_tables::{Q1_DOUBLE, observer};
 
     #[test]
     fn steady_force_keeps_an_eighth_of_noise() {
@@ -256,5 +257,16 @@ mod tests {
         let Uncertainty { mean_force_deviation, steady_force_deviation, .. } = uncertainty;
         assert!((mean_force_deviation - 0.316).abs() < 1e-3, "{mean_force_deviation}");
         assert!((steady_force_deviation - 0.112).abs() < 1e-3, "{steady_force_deviation}");
+    }
+
+    #[test]
+    fn gap_known_to_a_tenth_is_valid() {
+        let tables = &Q1_DOUBLE;
+        let (mut uncertainty, mut least_squares) =
+            (Uncertainty::uninitialized(), LeastSquares::<_, PLAIN>::UNINITIALIZED);
+        least_squares.reset(&tables.learner);
+        uncertainty.update_limits(tables, &least_squares, false);
+        // Gap of 160 um.
+        assert!((uncertainty.widest_variance.square_root() - 16e-6).abs() < 1e-9);
     }
 }

@@ -134,7 +134,7 @@ pub fn seconds<T: Real>(table: &ClockTable<T>, ticks: u32) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observer::test_tables::observer;
+    use crate::observer::test_tables::{Q1, observer};
 
     #[test]
     fn reading_is_lost_after_ten_periods() {
@@ -147,5 +147,27 @@ mod tests {
         };
         assert_ne!(sample_age(10), SampleAge::Unusable);
         assert_eq!(sample_age(11), SampleAge::Unusable);
+    }
+
+    /// Results of samples of Q1 with torques [N m], one per period.
+    fn with_torques<const N: usize>(sensors: &mut Sensors, torques: [f32; N]) -> [bool; N] {
+        torques.map(|torque| sensors.step(&Q1, &Samples { torque, ..Samples::default() }).torque_known)
+    }
+
+    #[test]
+    fn torque_above_twice_the_limit_is_rejected() {
+        // Q1's motor has 2.5 N m.
+        let known = with_torques(&mut Sensors::new(true), [4.9, 5.1, -4.9, -5.1]);
+        assert_eq!(known, [true, false, true, false]);
+    }
+
+    #[test]
+    fn rejected_torque_is_uncertain_for_20_ms() {
+        let mut sensors = Sensors::new(true);
+        with_torques(&mut sensors, [100.0]);
+        with_torques(&mut sensors, [0.0; 199]);
+        assert!(sensors.is_torque_uncertain());
+        with_torques(&mut sensors, [0.0]);
+        assert!(!sensors.is_torque_uncertain());
     }
 }

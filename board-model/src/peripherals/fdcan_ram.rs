@@ -71,7 +71,7 @@ impl Parts {
                 faults.push(format!("{name}: {count} elements, and {most} are allowed"));
             }
             if start + bytes > ram {
-                faults.push(format!("{name} end at byte {:#x}, and the RAM at {ram:#x}", start + bytes));
+                faults.push(format!("{name}: the end is byte {:#x}, and the RAM ends at {ram:#x}", start + bytes));
             }
             let beside =
                 used[..place].iter().filter(|other| start < other.start + other.bytes && other.start < start + bytes);
@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(faults([part("a", 0, 3), part("b", 212, 3)]), ["b and a overlap"]);
         assert_eq!(
             faults([part("a", 0x2800 - 212, 3), part("b", 0, 3)]),
-            ["a end at byte 0x2804, and the RAM at 0x2800"]
+            ["a: the end is byte 0x2804, and the RAM ends at 0x2800"]
         );
         assert_eq!(faults([part("a", 0, 65), part("b", 0x2000, 1)]), ["a: 65 elements, and 64 are allowed"]);
     }

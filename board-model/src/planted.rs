@@ -427,6 +427,62 @@ pub const ALL: &[Mistake] = &[
         &[at(0x4000_6418, OmitValue(0x300))],
         "FDCAN: the initialisation never ends",
     ),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_a01c, Field(0x1ff_0000, 1 << 16))],
+        "FDCAN: prescaler 2 for 1, half the bit rate",
+    ),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x5802_4430, Field(0x7f_0000, 1 << 16))],
+        "FDCAN: the divider of its clock left as after a reset",
+    ),
+    Mistake::new(Stm32h743, Drive, can::equals_twin, &[at(0x5802_4450, Omit)], "FDCAN: clocked by the debug probe"),
+    Mistake::new(Stm32h743, Drive, can::equals_twin, &[at(0x5802_44ec, Clear(1 << 8))], "FDCAN: its clock is off"),
+    Mistake::new(Stm32h743, Drive, can::equals_twin, &[at(0x4000_a804, Omit)], "FDCAN: clock calibration not bypassed")
+        .short(),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_a018, OmitValue(3))],
+        "FDCAN: set up without access to the settings",
+    ),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_a0c0, Field(0xfffc, 0xd4))],
+        "FDCAN: the FIFOs overlap in the message RAM by a word",
+    )
+    .short(),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_a0c0, Field(0xfffc, 0xdc))],
+        "FDCAN: the transmit FIFO a word behind its place in the message RAM",
+    ),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_a0a0, Field(0xfffc, 0x27fc))],
+        "FDCAN: the receive FIFO leaves the message RAM",
+    ),
+    Mistake::new(Stm32h743, Drive, can::equals_twin, &[at(0x4000_a0bc, Omit)], "FDCAN: received elements of 8 bytes"),
+    Mistake::new(Stm32h743, Drive, can::equals_twin, &[at(0x4000_a0c8, Omit)], "FDCAN: elements to send of 8 bytes"),
+    Mistake::new(
+        Stm32h743,
+        Drive,
+        can::equals_twin,
+        &[at(0x4000_a0a8, Omit)],
+        "FDCAN: received elements are never acknowledged",
+    ),
     // STM32G431.
     Mistake::new(
         Stm32g431,

@@ -36,6 +36,17 @@ pub struct Clocks {
     pub timers: u64,
 }
 
+/// Clock of the bit timing of FDCAN.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FdcanClock {
+    /// Selected clock [Hz]; 0 while it does not run.
+    pub selected: u64,
+    /// Divider between that clock and the peripherals; `None` if it is not settled.
+    pub divider: Option<u64>,
+    /// True while the settings of the divider can be changed.
+    pub is_open: bool,
+}
+
 /// Bit of a register of the reset and clock controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Gate {
@@ -229,6 +240,8 @@ pub struct Wires {
     pub violations: Violations,
     /// Present clocks.
     pub clocks: Clocks,
+    /// Clock of the bit timing of FDCAN.
+    pub fdcan: FdcanClock,
     /// Divided external source for capture by timers, while it runs [Hz].
     pub divided_external: Option<u64>,
     /// Registers of the clock controller by offset, with clock gates and resets.
@@ -305,6 +318,7 @@ impl Wires {
             pc: 0,
             violations: Violations::default(),
             clocks: Clocks::default(),
+            fdcan: FdcanClock::default(),
             divided_external: None,
             gates: BTreeMap::new(),
             interrupts: BTreeSet::new(),

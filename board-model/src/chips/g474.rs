@@ -13,7 +13,7 @@ use crate::peripherals::spi::{self, Spi};
 use crate::peripherals::syscfg::Syscfg;
 use crate::peripherals::tim::{self, Timer};
 use crate::peripherals::usart::{BusClock, Place, Usart};
-use crate::peripherals::{flash_g4, pwr_g4, rcc_g4};
+use crate::peripherals::{fdcan_maps, flash_g4, pwr_g4, rcc_g4};
 use crate::wires::{Gate, Pin};
 
 const AHB1ENR: u32 = 0x48;
@@ -40,13 +40,13 @@ const USART1: Place = Place {
     send: &[(Pin('A', 9), 7), (Pin('B', 6), 7), (Pin('C', 4), 7), (Pin('E', 0), 7), (Pin('G', 9), 7)],
     receive: &[(Pin('A', 10), 7), (Pin('B', 7), 7), (Pin('C', 5), 7), (Pin('E', 1), 7)],
 };
-/// Data sheet DS12288, table 13: function 9. RM0440 2.2.2 has the message RAM, 7.4.27 the clock.
+/// Data sheet DS12288, table 13: function 9. RM0440 2.2.2 has the message RAM.
 const FDCAN1: fdcan::Place = fdcan::Place {
     number: 1,
+    map: &fdcan_maps::G4,
     ram: 0x4000_a400,
     interrupt: 21,
     clock: Gate { offset: APB1ENR1, bit: 25 },
-    selection: (0x88, 24),
     send: &[(Pin('A', 12), 9), (Pin('B', 9), 9), (Pin('D', 1), 9)],
     receive: &[(Pin('A', 11), 9), (Pin('B', 8), 9), (Pin('D', 0), 9)],
 };

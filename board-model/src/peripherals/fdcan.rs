@@ -1,93 +1,45 @@
-//! FDCAN of STM32G4: RM0440 44. Transmit FIFO, receive FIFO 0, message RAM, errors, bus-off, second bit rate. Filters of
-//! the message RAM, FIFO 1, the transmit event FIFO, restricted operation and monitoring are not modelled: setting them
-//! up is a violation, and so is what the errata forbid (ES0430).
+//! FDCAN of STM32G474 (RM0440 44) and STM32H743 (RM0433 56). Transmit FIFO, receive FIFO 0, message RAM, errors, bus-off,
+//! second bit rate. Filters of the message RAM, FIFO 1, the transmit event FIFO, restricted operation and monitoring are
+//! not modelled: setting them up is a violation, and so is what the errata forbid (ES0430, ES0392). Registers that differ
+//! are in `fdcan_maps`.
 
 use std::collections::VecDeque;
 
 use drives::Frame;
-use drives::frame::{Id, Kind, extended, standard};
+use drives::frame::Kind;
 
 use super::Peripheral;
 use super::can_node::{CanNode, OFF, PASSIVE, WARNING};
+use super::fdcan_maps::{CCCR, DBTP, ECR, GFC, IE, ILE, ILS, IR, Map, NBTP, PSR, TDCR};
+use super::fdcan_ram::{Fifo, Parts, element_of, frame_of};
 use crate::can_bus::Node;
-use crate::register::{Register, Registers, bit, bits};
+use crate::register::{Registers, bit, bits};
 use crate::wires::{Gate, Pin, Time, Wires};
-
-const DBTP: u32 = 0x0c;
-const CCCR: u32 = 0x18;
-const NBTP: u32 = 0x1c;
-const ECR: u32 = 0x40;
-const PSR: u32 = 0x44;
-const TDCR: u32 = 0x48;
-const IR: u32 = 0x50;
-const IE: u32 = 0x54;
-const ILS: u32 = 0x58;
-const ILE: u32 = 0x5c;
-const RXGFC: u32 = 0x80;
-const RXF0S: u32 = 0x90;
-const RXF0A: u32 = 0x94;
-const TXFQS: u32 = 0xc4;
-const TXBRP: u32 = 0xc8;
-const TXBAR: u32 = 0xcc;
 
 const INIT: u32 = bit(0);
 const CCE: u32 = bit(1);
+/// Most elements of a FIFO.
+const MOST: usize = 64;
 
-/// Elements of a FIFO.
-const DEPTH: usize = 3;
-/// Parts of the message RAM [byte] (44.3.3), and its size.
-const FIFO_0: u32 = 0xb0;
-const SEND_FIFO: u32 = 0x278;
-const ELEMENT: u32 = 72;
-const RAM: u32 = 0x350;
-
-/// Data lengths by code.
-const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
-
-static TABLE: [Register; 28] = [
-    Register::new("FDCAN_DBTP", DBTP, 0x0000_0a33, 0x009f_1fff),
-    Register::new("FDCAN_TEST", 0x10, 0, 0),
-    Register::new("FDCAN_RWD", 0x14, 0, 0xffff),
-    Register::new("FDCAN_CCCR", CCCR, 1, 0xf3ff),
-    Register::new("FDCAN_NBTP", NBTP, 0x0600_0a03, 0xffff_ff7f),
-    Register::new("FDCAN_TSCC", 0x20, 0, 0x000f_0003),
-    Register::new("FDCAN_TSCV", 0x24, 0, 0xffff).special(0xffff),
-    Register::new("FDCAN_TOCC", 0x28, 0xffff_0000, 0xffff_0007),
-    Register::new("FDCAN_ECR", ECR, 0, 0x00ff_ffff).special(0x00ff_ffff),
-    Register::new("FDCAN_PSR", PSR, 0x707, 0x007f_7fff).special(0x007f_7fff),
-    Register::new("FDCAN_TDCR", TDCR, 0, 0x7f7f),
-    Register::new("FDCAN_IR", IR, 0, 0x00ff_ffff).special(0x00ff_ffff),
-    Register::new("FDCAN_IE", IE, 0, 0x00ff_ffff),
-    Register::new("FDCAN_ILS", ILS, 0, 0x7f),
-    Register::new("FDCAN_ILE", ILE, 0, 3),
-    Register::new("FDCAN_RXGFC", RXGFC, 0, 0x0f1f_033f),
-    Register::new("FDCAN_XIDAM", 0x84, 0x1fff_ffff, 0x1fff_ffff),
-    Register::new("FDCAN_RXF0S", RXF0S, 0, 0x0303_030f).special(0x0303_030f),
-    Register::new("FDCAN_RXF0A", RXF0A, 0, 7),
-    Register::new("FDCAN_RXF1S", 0x98, 0, 0x0303_030f).special(0x0303_030f),
-    Register::new("FDCAN_TXBC", 0xc0, 0, bit(24)),
-    Register::new("FDCAN_TXFQS", TXFQS, 3, 0x0023_0307).special(0x0023_0307),
-    Register::new("FDCAN_TXBRP", TXBRP, 0, 7).special(7),
-    Register::new("FDCAN_TXBAR", TXBAR, 0, 7).special(7),
-    Register::new("FDCAN_TXBTO", 0xd4, 0, 7).special(7),
-    Register::new("FDCAN_TXBTIE", 0xdc, 0, 7),
-    Register::new("FDCAN_TXEFS", 0xe4, 0, 0x0303_0307).special(0x0303_0307),
-    Register::new("FDCAN_CKDIV", 0x100, 0, 0xf),
-];
+/// Places of subjects in the list of the manual's sections.
+const SETUP: usize = 0;
+const TIMING: usize = 1;
+const RAM: usize = 2;
+const FIFO: usize = 3;
 
 /// Connections of an FDCAN on the chip.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
     /// Number of the peripheral.
     pub number: u32,
+    /// Registers of the chip.
+    pub map: &'static Map,
     /// First address of its message RAM.
     pub ram: u32,
     /// Interrupt of line 0.
     pub interrupt: usize,
     /// Clock gate of peripheral and message RAM.
     pub clock: Gate,
-    /// Register of the clock controller that selects the clock, and the bit pair's place: 2 is the bus clock.
-    pub selection: (u32, u32),
     /// Possible transmit pins, with the alternate function.
     pub send: &'static [(Pin, u32)],
     /// Possible receive pins.
@@ -100,13 +52,14 @@ pub struct Fdcan {
     registers: Registers,
     place: Place,
     ram: Vec<u32>,
+    parts: Parts,
     /// Indices of elements that wait for the bus, the oldest first.
     waiting: VecDeque<usize>,
     next_element: usize,
     /// Frames of FIFO 0 by the index of their element.
     received: VecDeque<usize>,
     next_received: usize,
-    frames: [Option<Frame>; DEPTH],
+    frames: Vec<Option<Frame>>,
     has_lost: bool,
     node: CanNode,
 }
@@ -114,16 +67,18 @@ pub struct Fdcan {
 impl Fdcan {
     /// FDCAN after a reset.
     pub fn new(place: Place) -> Self {
+        let registers = Registers::new(place.map.table);
         Self {
-            registers: Registers::new(&TABLE),
+            parts: (place.map.parts)(&registers),
+            registers,
             place,
             // RM0440 44.3.3: the message RAM is not cleared by a reset.
-            ram: vec![0xa5a5_a5a5; (RAM / 4) as usize],
+            ram: vec![0xa5a5_a5a5; (place.map.ram / 4) as usize],
             waiting: VecDeque::new(),
             next_element: 0,
             received: VecDeque::new(),
             next_received: 0,
-            frames: [const { None }; DEPTH],
+            frames: vec![None; MOST],
             has_lost: false,
             node: CanNode::default(),
         }
@@ -145,11 +100,11 @@ impl Fdcan {
     fn change_control(&mut self, value: u32, before: u32, wires: &mut Wires) {
         let fixed = bits(15, 2) & !bit(4) & !bit(3);
         if (value ^ before) & fixed != 0 && before & (INIT | CCE) != INIT | CCE {
-            wires.violation("FDCAN_CCCR", "modes are changed while INIT and CCE are not both 1", "RM0440 44.3.2");
+            wires.violation("FDCAN_CCCR", "modes are changed while INIT and CCE are not both 1", self.section(SETUP));
         }
         for (place, what, section) in [
-            (13, "edge filtering EFBI, which may lose frames", "ES0430, FDCAN"),
-            (6, "no retransmission DAR, which loses frames on lost arbitration", "ES0430, FDCAN"),
+            (13, "edge filtering EFBI, which may lose frames", "ES0430, ES0392, FDCAN"),
+            (6, "no retransmission DAR, which loses frames on lost arbitration", "ES0430, ES0392, FDCAN"),
             (5, "bus monitoring", "modes that the model does not have"),
             (2, "restricted operation", "modes that the model does not have"),
             (7, "test mode", "modes that the model does not have"),
@@ -165,20 +120,26 @@ impl Fdcan {
             if before & INIT != 0 {
                 self.check_timing(wires);
                 self.check_pins(wires);
+                self.check_ram(wires);
                 self.node.join(wires);
             }
         }
     }
 
-    /// Clock of the bit timing [Hz]; 0 if it is not that of the bus, whose rate the model knows.
+    /// Clock of the bit timing [Hz]; 0 if there is none. The bus of the registers must not be slower.
     fn clock(&self, wires: &mut Wires) -> u64 {
-        let (register, place) = self.place.selection;
-        if wires.gates.get(&register).is_none_or(|value| value >> place & 3 != 2) {
-            wires.violation("RCC_CCIPR", "FDCANSEL does not select the clock of the bus", "RM0440 7.4.27");
-            return 0;
+        let own = self.place.map.divider.map(|register| u64::from(self.registers.get(register)));
+        let divider = own.map_or(wires.fdcan.divider, |own| Some(if own == 0 { 1 } else { 2 * own }));
+        let clock = divider.map_or(0, |divider| wires.fdcan.selected / divider);
+        if divider.is_none() {
+            let what = "INIT becomes 0 while the clock calibration is not bypassed, which the model does not have";
+            wires.violation("FDCAN_CCU_CCFG", what, self.section(TIMING));
+        } else if clock == 0 {
+            wires.violation("RCC", "FDCANSEL selects a clock that does not run", self.section(TIMING));
+        } else if clock > wires.clocks.low {
+            wires.violation("RCC", "FDCANSEL selects a clock above that of the bus", self.section(TIMING));
         }
-        let divider = u64::from(self.registers.get(0x100));
-        wires.clocks.low / if divider == 0 { 1 } else { 2 * divider }
+        clock
     }
 
     /// Both bit timings against clock and bus (RM0440 44.4.3, 44.4.7).
@@ -217,93 +178,98 @@ impl Fdcan {
         self.node.is_on_rate = faults.is_empty();
         let has_bus = self.has_bus(wires);
         for (register, what) in faults.into_iter().filter(|_| has_bus) {
-            wires.violation(register, what, "RM0440 44.3.1, 44.4.3, 44.4.7");
+            wires.violation(register, what, self.section(TIMING));
         }
+    }
+
+    /// Division of the message RAM, and settings that are not modelled.
+    fn check_ram(&self, wires: &mut Wires) {
+        for what in self.parts.faults(self.place.map.ram) {
+            wires.violation("message RAM", what, self.section(RAM));
+        }
+        for missing in self.place.map.missing {
+            if self.registers.get(missing.register) & missing.mask != 0 {
+                wires.violation("FDCAN", missing.what, missing.section);
+            }
+        }
+    }
+
+    fn section(&self, subject: usize) -> &'static str {
+        self.place.map.sections[subject]
     }
 
     fn check_pins(&self, wires: &mut Wires) {
         if self.has_bus(wires) && !self.is_routed(wires) {
             let what = format!("INIT becomes 0 while a pin is not routed to FDCAN{}", self.place.number);
-            wires.violation("FDCAN_CCCR", what, "RM0440 9.3.2");
+            wires.violation("FDCAN_CCCR", what, "the table of alternate functions");
         }
     }
 
     /// Takes the frames whose sending the core requests.
     fn request(&mut self, value: u32, wires: &mut Wires) {
         if self.registers.get(CCCR) & CCE != 0 {
-            wires.violation("FDCAN_TXBAR", "is written while CCE is 1", "RM0440 44.4.35");
+            wires.violation("FDCAN_TXBAR", "is written while CCE is 1", self.section(FIFO));
         }
-        for index in (0..DEPTH).filter(|index| value >> index & 1 == 1) {
-            if self.waiting.contains(&index) || index != self.next_element {
+        for index in (0..32).filter(|index| value >> index & 1 == 1) {
+            if self.waiting.len() == self.parts.send.depth || index != self.next_element {
                 let what = format!("element {index} is requested, and the next one is {}", self.next_element);
-                wires.violation("FDCAN_TXBAR", what, "RM0440 44.3.6: transmit FIFO");
+                wires.violation("FDCAN_TXBAR", what, self.section(FIFO));
                 continue;
             }
-            self.next_element = (index + 1) % DEPTH;
+            self.next_element = (index + 1) % self.parts.send.depth;
             self.waiting.push_back(index);
-            if let Some(frame) = self.element(SEND_FIFO + ELEMENT * index as u32, wires) {
+            if let Some(frame) = self.element(index, wires) {
                 wires.can.handed.push((wires.can.ticks, frame));
             }
         }
     }
 
-    /// Frame of an element in the message RAM.
-    fn element(&self, offset: u32, wires: &mut Wires) -> Option<Frame> {
-        let word = |place: u32| self.ram[((offset + 4 * place) / 4) as usize];
-        let (id, control) = (word(0), word(1));
-        let of = if id & bit(30) != 0 { extended(id) } else { standard((id >> 18) as u16) };
-        let (is_flexible, is_fast) = (control & bit(21) != 0, control & bit(20) != 0);
-        if control & bit(23) != 0 {
+    /// Frame of an element of the transmit FIFO.
+    fn element(&self, index: usize, wires: &mut Wires) -> Option<Frame> {
+        let words = self.ram.get(words_of(self.parts.send, index)).unwrap_or_default();
+        let frame = frame_of(words, self.parts.send.element as usize - 8);
+        let modes = self.registers.get(CCCR);
+        if words.get(1).is_some_and(|control| control & bit(23) != 0) {
             wires.violation("message RAM", "a transmit event is requested", "modes that the model does not have");
         }
-        if is_flexible && self.registers.get(CCCR) & bit(8) == 0 || is_fast && self.registers.get(CCCR) & bit(9) == 0 {
-            wires.violation("message RAM", "a frame of CAN FD while FDOE or BRSE is 0", "RM0440 44.4.6");
+        if let Some(Kind::Flexible(is_fast)) = frame.as_ref().map(|frame| frame.kind)
+            && (modes & bit(8) == 0 || is_fast && modes & bit(9) == 0)
+        {
+            wires.violation("message RAM", "a frame of CAN FD while FDOE or BRSE is 0", self.section(SETUP));
         }
-        let code = (control >> 16 & 0xf) as usize;
-        let length = if is_flexible { LENGTHS[code] } else { LENGTHS[code].min(8) };
-        let data: Vec<u8> = (0..16).flat_map(|place| word(2 + place).to_le_bytes()).take(length).collect();
-        if id & bit(29) != 0 {
-            return Frame::remote(of, length as u8);
-        }
-        Frame::with_kind(of, if is_flexible { Kind::Flexible(is_fast) } else { Kind::Classic }, &data)
+        frame
     }
 
     /// Receives a frame of the other node.
     fn arrive(&mut self, frame: &Frame, wires: &mut Wires) {
         self.node.received();
-        let settings = self.registers.get(RXGFC);
+        let settings = self.registers.get(GFC);
         let is_long = frame.extended_id().is_some();
         let (reject, fate) =
             if is_long { (settings & 1, settings >> 2 & 3) } else { (settings >> 1 & 1, settings >> 4 & 3) };
         let is_rejected = frame.kind == Kind::Remote && reject != 0;
-        if settings & 0x0f1f_0000 != 0 || fate == 1 {
-            wires.violation(
-                "FDCAN_RXGFC",
-                "filters of the message RAM, or FIFO 1",
-                "modes that the model does not have",
-            );
+        if fate == 1 {
+            wires.violation("FDCAN_GFC", "FIFO 1", "modes that the model does not have");
         }
         if is_rejected || fate != 0 {
             return;
         }
-        if self.received.len() == DEPTH {
+        let [full, lost, _] = self.place.map.flags;
+        let fifo = self.parts.receive;
+        if self.received.len() == fifo.depth {
             (self.has_lost, wires.can.overruns) = (true, wires.can.overruns + 1);
-            self.registers.change(IR, bit(2), 0);
+            self.registers.change(IR, bit(lost), 0);
             return;
         }
         let index = self.next_received;
-        self.next_received = (index + 1) % DEPTH;
+        self.next_received = (index + 1) % fifo.depth;
         self.received.push_back(index);
         self.frames[index] = Some(frame.clone());
-        let at = ((FIFO_0 + ELEMENT * index as u32) / 4) as usize;
-        let (id, control) = header(frame);
-        (self.ram[at], self.ram[at + 1]) = (id, control);
-        for (place, bytes) in frame.data().chunks(4).enumerate() {
-            let mut word = [0; 4];
-            word[..bytes.len()].copy_from_slice(bytes);
-            self.ram[at + 2 + place] = u32::from_le_bytes(word);
+        if let Some(words) = self.ram.get_mut(words_of(fifo, index)) {
+            let element = element_of(frame, fifo.element as usize - 8);
+            words[..element.len()].copy_from_slice(&element);
         }
-        self.registers.change(IR, bit(0) | u32::from(self.received.len() == DEPTH) << 1, 0);
+        self.registers.change(IR, bit(0) | u32::from(self.received.len() == fifo.depth) << full, 0);
     }
 
     fn acknowledge(&mut self, index: usize, wires: &mut Wires) {
@@ -311,7 +277,7 @@ impl Fdcan {
             wires.violation(
                 "FDCAN_RXF0A",
                 format!("element {index} is acknowledged, and is not filled"),
-                "RM0440 44.4.22",
+                self.section(FIFO),
             );
             return;
         }
@@ -332,7 +298,7 @@ impl Fdcan {
         } else if self.node.failed(is_destroyed, wires) {
             // RM0440 44.3.1: INIT is set by bus-off; the recovery begins when the core clears it.
             self.registers.change(CCCR, INIT, 0);
-            self.registers.change(IR, bit(19), 0);
+            self.registers.change(IR, bit(self.place.map.flags[2]), 0);
             self.node.leave();
         }
     }
@@ -356,7 +322,7 @@ impl Fdcan {
                 }
             }
             let index = self.waiting.front().copied().filter(|_| self.takes_part(wires));
-            let frame = index.and_then(|index| self.element(SEND_FIFO + ELEMENT * index as u32, wires));
+            let frame = index.and_then(|index| self.element(index, wires));
             let now = wires.now;
             let own = index.zip(frame.as_ref());
             if !wires.can.begin(own, now) || wires.can.next_event().is_none_or(|end| end > now) {
@@ -372,17 +338,17 @@ impl Fdcan {
     }
 
     fn is_in_ram(&self, address: u32) -> bool {
-        (self.place.ram..self.place.ram + RAM).contains(&address)
+        (self.place.ram..self.place.ram + self.place.map.ram).contains(&address)
     }
 
     /// Checks an access to the message RAM; returns the index of the word.
     fn ram_word(&self, address: u32, size: u32, wires: &mut Wires) -> Option<usize> {
         if !wires.is_on(self.place.clock) {
-            wires.violation("message RAM", "is accessed while the clock of FDCAN is off", "RM0440 7.4.17");
+            wires.violation("message RAM", "is accessed while the clock of FDCAN is off", self.section(RAM));
             return None;
         }
         if size != 4 || !address.is_multiple_of(4) {
-            wires.violation("message RAM", format!("is accessed by {size} bytes"), "RM0440 44.3.3: words only");
+            wires.violation("message RAM", format!("is accessed by {size} bytes"), self.section(RAM));
             return None;
         }
         Some(((address - self.place.ram) / 4) as usize)
@@ -396,21 +362,22 @@ impl Peripheral for Fdcan {
 
     fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
         self.advance(wires);
+        let ([received, _], [free, pending, _]) = (self.place.map.receive, self.place.map.send);
         match offset {
-            RXF0S => {
+            _ if offset == received => {
                 let front = self.received.front().copied().unwrap_or(self.next_received) as u32;
                 self.received.len() as u32
                     | front << 8
                     | (self.next_received as u32) << 16
-                    | u32::from(self.received.len() == DEPTH) << 24
+                    | u32::from(self.received.len() == self.parts.receive.depth) << 24
                     | u32::from(self.has_lost) << 25
             }
-            TXFQS => {
-                let free = (DEPTH - self.waiting.len()) as u32;
+            _ if offset == free => {
+                let free = (self.parts.send.depth - self.waiting.len()) as u32;
                 let first = self.waiting.front().copied().unwrap_or(self.next_element) as u32;
                 free | first << 8 | (self.next_element as u32) << 16 | u32::from(free == 0) << 21
             }
-            TXBRP => self.waiting.iter().map(|index| 1 << index).sum(),
+            _ if offset == pending => self.waiting.iter().map(|index| 1 << index).sum(),
             ECR => {
                 let [sent, received] = self.node.errors.map(|count| count.min(OFF));
                 sent | received.min(127) << 8
@@ -429,20 +396,22 @@ impl Peripheral for Fdcan {
 
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         self.advance(wires);
+        let map = self.place.map;
+        let is_open = self.registers.get(CCCR) & (INIT | CCE) == INIT | CCE;
+        let is_setting = matches!(offset, NBTP | DBTP | TDCR) || map.settings.contains(&offset);
+        if is_setting && !is_open && value != before {
+            let what = format!("register {offset:#x} is changed while INIT and CCE are not both 1");
+            wires.violation("FDCAN", what, self.section(SETUP));
+        }
         match offset {
             CCCR => self.change_control(value, before, wires),
-            NBTP | DBTP | TDCR | RXGFC | 0xc0 | 0x100
-                if self.registers.get(CCCR) & (INIT | CCE) != INIT | CCE && value != before =>
-            {
-                let what = format!("register {offset:#x} is changed while INIT and CCE are not both 1");
-                wires.violation("FDCAN", what, "RM0440 44.3.2");
-            }
             IR => {
                 self.registers.change(IR, 0, value);
-                self.has_lost &= value & bit(2) == 0;
+                self.has_lost &= value & bit(map.flags[1]) == 0;
             }
-            RXF0A => self.acknowledge((value & 7) as usize, wires),
-            TXBAR => self.request(value, wires),
+            _ if offset == map.receive[1] => self.acknowledge((value & 0x3f) as usize, wires),
+            _ if offset == map.send[2] => self.request(value, wires),
+            _ if is_setting => self.parts = (map.parts)(&self.registers),
             _ => {}
         }
         self.advance(wires);
@@ -450,6 +419,9 @@ impl Peripheral for Fdcan {
 
     fn advance(&mut self, wires: &mut Wires) {
         self.advance_bus(wires);
+        if self.place.number == 1 {
+            wires.fdcan.is_open = self.registers.get(CCCR) & (INIT | CCE) == INIT | CCE;
+        }
         self.update_wires(wires);
     }
 
@@ -471,9 +443,8 @@ impl Peripheral for Fdcan {
             return false;
         }
         let offset = address - self.place.ram;
-        let element = (offset.wrapping_sub(SEND_FIFO) / ELEMENT) as usize;
-        if offset >= SEND_FIFO && self.waiting.contains(&element) {
-            wires.violation("message RAM", "an element that waits for the bus is written", "RM0440 44.3.6");
+        if self.parts.send.index(offset).is_some_and(|index| self.waiting.contains(&index)) {
+            wires.violation("message RAM", "an element that waits for the bus is written", self.section(FIFO));
         }
         if let Some(word) = self.ram_word(address, size, wires) {
             self.ram[word] = value as u32;
@@ -482,18 +453,8 @@ impl Peripheral for Fdcan {
     }
 }
 
-/// Header words of an element.
-fn header(frame: &Frame) -> (u32, u32) {
-    let remote = u32::from(frame.kind == Kind::Remote) << 29;
-    let id = match frame.id {
-        Id::Standard(id) => u32::from(id.as_raw()) << 18,
-        Id::Extended(id) => id.as_raw() | bit(30),
-    };
-    let kind = match frame.kind {
-        Kind::Flexible(fast) => bit(21) | u32::from(fast) << 20,
-        _ => 0,
-    };
-    let code = LENGTHS.iter().position(|length| *length >= frame.length()).unwrap_or_default();
-    // ANMF: no filter has passed the frame.
-    (id | remote, bit(31) | kind | (code as u32) << 16)
+/// Words of an element in the message RAM.
+fn words_of(fifo: Fifo, index: usize) -> std::ops::Range<usize> {
+    let start = (fifo.place(index) / 4) as usize;
+    start..start + (fifo.element / 4) as usize
 }

@@ -9,6 +9,7 @@ const CFGR: u32 = 0x08;
 const CIFR: u32 = 0x1c;
 const CICR: u32 = 0x20;
 const PLLCFGR: u32 = 0x0c;
+const CCIPR: u32 = 0x88;
 const CSR: u32 = 0x94;
 /// Internal oscillator [Hz].
 const INTERNAL: u64 = 16_000_000;
@@ -46,7 +47,7 @@ const MAP: [Register; 28] = [
     Register::new("RCC_APB1SMENR1", 0x78, 0xd2fe_cd3f, 0xd2fe_cd3f),
     Register::new("RCC_APB1SMENR2", 0x7c, 0x0103, 0x0103),
     Register::new("RCC_APB2SMENR", 0x80, 0x0437_f801, 0x0437_f801),
-    Register::new("RCC_CCIPR", 0x88, 0, u32::MAX),
+    Register::new("RCC_CCIPR", CCIPR, 0, u32::MAX),
     Register::new("RCC_BDCR", 0x90, 0, 0x0301_837f).special(bit(1)),
     Register::new("RCC_CSR", CSR, 0x0c00_0000, 0xfe80_0003).special(FLAGS | bit(1)),
 ];
@@ -176,6 +177,18 @@ impl Rcc {
         }
     }
 
+    /// Clock that FDCANSEL selects, while it runs [Hz]: 7.4.27.
+    fn can_clock(&self, low: u64, wires: &Wires) -> u64 {
+        match self.registers.field(CCIPR, 24, 2) {
+            0 => self.oscillators.divided_external(1, wires).unwrap_or(0),
+            1 if self.registers.is_set(PLLCFGR, 20) && self.oscillators.is_ready(Origin::Pll, wires) => {
+                self.pll_rates()[1] / u64::from(2 * (self.registers.field(PLLCFGR, 21, 2) + 1))
+            }
+            2 => low,
+            _ => 0,
+        }
+    }
+
     fn system(&self) -> u64 {
         match self.oscillators.selected(&self.registers) {
             Origin::Internal => INTERNAL,
@@ -201,7 +214,7 @@ impl Peripheral for Rcc {
             CSR if value & bit(23) != 0 => self.registers.change(CSR, 0, FLAGS | bit(23)),
             _ => {}
         }
-        for offset in [0x28, 0x2c, 0x30, 0x38, 0x3c, 0x40, 0x48, 0x4c, 0x50, 0x58, 0x5c, 0x60, 0x88] {
+        for offset in [0x28, 0x2c, 0x30, 0x38, 0x3c, 0x40, 0x48, 0x4c, 0x50, 0x58, 0x5c, 0x60] {
             wires.gates.insert(offset, self.registers.get(offset));
         }
         self.advance(wires);
@@ -216,6 +229,7 @@ impl Peripheral for Rcc {
         let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
         let low = core / peripheral_divider(self.registers.field(CFGR, 8, 3));
         let high = core / peripheral_divider(self.registers.field(CFGR, 11, 3));
+        wires.fdcan.selected = self.can_clock(low, wires);
         let clocks = Clocks { system, core, bus: core, low, high, timers: timer_clock(core, high) };
         if clocks != wires.clocks {
             wires.clocks = clocks;

@@ -13,6 +13,7 @@ const D2CFGR: u32 = 0x1c;
 const PLLCKSELR: u32 = 0x28;
 const PLLCFGR: u32 = 0x2c;
 const PLL1DIVR: u32 = 0x30;
+const D2CCIP1R: u32 = 0x50;
 const RSR: u32 = 0xd0;
 /// Internal oscillator [Hz].
 const INTERNAL: u64 = 64_000_000;
@@ -38,7 +39,7 @@ static MAP: [Register; 45] = [
     Register::new("RCC_PLL3DIVR", 0x40, 0x0101_0280, 0x7f7f_ffff),
     Register::new("RCC_PLL3FRACR", 0x44, 0, 0xfff8),
     Register::new("RCC_D1CCIPR", 0x4c, 0, 0x3001_0033),
-    Register::new("RCC_D2CCIP1R", 0x50, 0, 0xb137_71c7),
+    Register::new("RCC_D2CCIP1R", D2CCIP1R, 0, 0xb137_71c7),
     Register::new("RCC_D2CCIP2R", 0x54, 0, 0x70f0_333f),
     Register::new("RCC_D3CCIPR", 0x58, 0, 0x77e3_ff07),
     Register::new("RCC_CIER", 0x60, 0, 0x03ff),
@@ -109,6 +110,17 @@ impl Rcc {
         let input = source.checked_div(self.registers.field(PLLCKSELR, 4, 6).into()).unwrap_or(0);
         let inner = input * u64::from(self.registers.field(PLL1DIVR, 0, 9) + 1);
         [input, inner, inner / u64::from(self.registers.field(PLL1DIVR, 9, 7) + 1)]
+    }
+
+    /// Clock that FDCANSEL selects, while it runs [Hz]: 8.7.20. Output Q of PLL 1 is divided by DIVQ1 + 1.
+    fn can_clock(&self, wires: &Wires) -> u64 {
+        match self.registers.field(D2CCIP1R, 28, 2) {
+            0 => self.oscillators.divided_external(1, wires).unwrap_or(0),
+            1 if self.registers.is_set(PLLCFGR, 17) && self.oscillators.is_ready(Origin::Pll, wires) => {
+                self.pll_rates()[1] / u64::from(self.registers.field(PLL1DIVR, 16, 7) + 1)
+            }
+            _ => 0,
+        }
     }
 
     fn start_pll(&mut self, wires: &mut Wires) {
@@ -197,6 +209,7 @@ impl Peripheral for Rcc {
         // RM0433 8.7.6: with TIMPRE the timers run at four times the clock of their bus, at most at the clock of the
         // core's bus.
         let timers = if self.registers.is_set(CFGR, 15) { bus.min(4 * high) } else { timer_clock(bus, high) };
+        wires.fdcan.selected = self.can_clock(wires);
         let clocks = Clocks { system, core, bus, low, high, timers };
         if clocks != wires.clocks {
             wires.clocks = clocks;

@@ -1,40 +1,22 @@
-//! FDCAN of STM32G4 (RM0440 44): CAN FD with a transmit FIFO and receive FIFO 0 of three frames each, in a fixed message
-//! RAM. No filter is set up: all identifiers go to FIFO 0, since clients may change that of a drive at run time, and
-//! CANopen has broadcasts. After bus-off the tick ends the initialisation that the peripheral has begun, and the
-//! peripheral waits for 128 times 11 recessive bits, as the makers' drives do.
+//! FDCAN of STM32G4 (RM0440 44) and STM32H743 (RM0433 56): CAN FD with a transmit FIFO and receive FIFO 0 of three
+//! frames each. Clock and message RAM differ: `fdcan_g4`, `fdcan_h7`. No filter is set up: all identifiers go to FIFO 0,
+//! since clients may change that of a drive at run time, and CANopen has broadcasts. After bus-off the tick ends the
+//! initialisation that the peripheral has begun, and the peripheral waits for 128 times 11 recessive bits, as the makers'
+//! drives do.
 //!
-//! Errata (ES0430): no edge filtering, no dedicated transmit buffers beside the FIFO, retransmission left on.
+//! Errata (ES0430, ES0392): no edge filtering, no dedicated transmit buffers beside the FIFO, retransmission left on.
 
 use drives::Frame;
 use drives::frame::{Id, Kind, LENGTHS, MAX_DATA, extended, length_code, standard};
 
 use super::bounded_wait::wait_until;
 use super::description::{CAN_DATA_TIMING, CAN_TIMING};
+#[cfg(family = "stm32g4")]
+use super::fdcan_g4::{DEPTH, ELEMENT, FIFO_0, RAM, RAM_WORDS, SEND_FIFO, Unit, lay_out_ram, turn_on};
+#[cfg(family = "stm32h7")]
+use super::fdcan_h7::{DEPTH, ELEMENT, FIFO_0, RAM, RAM_WORDS, SEND_FIFO, Unit, lay_out_ram, turn_on};
 use super::pac;
 use crate::can::{CanReceiver, CanSender};
-
-#[cfg(can = "fdcan1")]
-type Unit = pac::FDCAN1;
-#[cfg(can = "fdcan2")]
-type Unit = pac::FDCAN2;
-#[cfg(can = "fdcan3")]
-type Unit = pac::FDCAN3;
-
-/// Number of the peripheral, from 0.
-const NUMBER: usize = if cfg!(can = "fdcan1") {
-    0
-} else if cfg!(can = "fdcan2") {
-    1
-} else {
-    2
-};
-/// Message RAM of this peripheral, and its parts [byte]: RM0440 44.3.3.
-const RAM: usize = 0x4000_a400 + 0x350 * NUMBER;
-const RAM_WORDS: usize = 0x350 / 4;
-const FIFO_0: usize = RAM + 0xb0;
-const SEND_FIFO: usize = RAM + 0x278;
-/// Words of an element: two of header, 64 bytes of data.
-const ELEMENT_WORDS: usize = 18;
 
 /// Bits of an element's first word.
 const EXTENDED: u32 = 1 << 30;
@@ -60,15 +42,11 @@ pub struct Sender(Unit);
 /// Starts the peripheral. The bus may be silent or held by another node: the peripheral joins it after 11 recessive
 /// bits, without waiting here.
 pub fn open(clocks: &pac::RCC) -> (Receiver, Sender) {
-    clocks.ccipr().modify(|_, w| w.fdcansel().pclk());
-    clocks.apb1enr1().modify(|_, w| w.fdcanen().set_bit());
-    let _ = clocks.apb1enr1().read();
-    clocks.apb1rstr1().modify(|_, w| w.fdcanrst().set_bit());
-    clocks.apb1rstr1().modify(|_, w| w.fdcanrst().clear_bit());
+    turn_on(clocks);
     // SAFETY: called once, at the start; the peripheral has no other user. Its halves write different registers.
     let (unit, receiving) = unsafe { (Unit::steal(), Unit::steal()) };
     for word in 0..RAM_WORDS {
-        write_ram(RAM + 4 * word, 0);
+        write_ram(4 * word, 0);
     }
     // SAFETY: defined bits; the build has held the timing against the ranges of the reference manual.
     unsafe {
@@ -78,6 +56,7 @@ pub fn open(clocks: &pac::RCC) -> (Receiver, Sender) {
         unit.cccr().write(|w| w.bits(INIT | CHANGE));
         let flexible = if CAN_DATA_TIMING.is_some() { FLEXIBLE_FRAMES } else { 0 };
         unit.cccr().write(|w| w.bits(INIT | CHANGE | flexible));
+        lay_out_ram(&unit);
         let (prescaler, before, after, jump) = CAN_TIMING;
         unit.nbtp().write(|w| w.bits((jump - 1) << 25 | (prescaler - 1) << 16 | (before - 1) << 8 | (after - 1)));
         if let Some((prescaler, before, after, jump)) = CAN_DATA_TIMING {
@@ -94,14 +73,19 @@ pub fn open(clocks: &pac::RCC) -> (Receiver, Sender) {
 }
 
 /// Writes a word of the message RAM, which has no other access.
-fn write_ram(address: usize, word: u32) {
+fn write_ram(offset: usize, word: u32) {
     // SAFETY: callers stay within the message RAM of this peripheral, in elements that the peripheral does not use.
-    unsafe { (address as *mut u32).write_volatile(word) }
+    unsafe { ((RAM + offset) as *mut u32).write_volatile(word) }
 }
 
-fn read_ram(address: usize) -> u32 {
+fn read_ram(offset: usize) -> u32 {
     // SAFETY: as for writing.
-    unsafe { (address as *const u32).read_volatile() }
+    unsafe { ((RAM + offset) as *const u32).read_volatile() }
+}
+
+/// Place of an element of a FIFO in the message RAM [byte]; indices of the peripheral are below the depth.
+fn element(fifo: usize, index: u8) -> usize {
+    fifo + ELEMENT * usize::from(index).min(DEPTH - 1)
 }
 
 impl CanReceiver for Receiver {
@@ -118,7 +102,7 @@ impl CanReceiver for Receiver {
             return None;
         }
         let index = status.f0gi().bits();
-        let element = FIFO_0 + 4 * ELEMENT_WORDS * usize::from(index.min(2));
+        let element = element(FIFO_0, index);
         let (id, control) = (read_ram(element), read_ram(element + 4));
         let mut data = [[0; 4]; MAX_DATA / 4];
         let length = length_of(control);
@@ -140,8 +124,8 @@ impl CanSender for Sender {
         if status.tffl().bits() == 0 {
             return false;
         }
-        let index = status.tfqpi().bits().min(2);
-        let element = SEND_FIFO + 4 * ELEMENT_WORDS * usize::from(index);
+        let index = status.tfqpi().bits();
+        let element = element(SEND_FIFO, index);
         let (id, control) = encode(frame);
         write_ram(element, id);
         write_ram(element + 4, control);

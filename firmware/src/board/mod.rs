@@ -10,8 +10,12 @@ mod description;
 #[cfg(has_spi_slave)]
 pub mod dma_slave;
 mod external_clock;
-#[cfg(all(family = "stm32g4", has_can))]
+#[cfg(all(not(family = "stm32f4"), has_can))]
 pub mod fdcan;
+#[cfg(all(family = "stm32g4", has_can))]
+mod fdcan_g4;
+#[cfg(all(family = "stm32h7", has_can))]
+mod fdcan_h7;
 pub mod flash_slots;
 #[cfg(not(family = "stm32h7"))]
 pub mod flash_unit;
@@ -26,7 +30,7 @@ mod watchdog;
 pub use bxcan as can;
 pub use chip::{Chip, Parts};
 pub use description::{CORE_RATE, NAME};
-#[cfg(all(family = "stm32g4", has_can))]
+#[cfg(all(not(family = "stm32f4"), has_can))]
 pub use fdcan as can;
 pub use gpio::{Output, Pin};
 pub use serial_unit::wake as wake_serial;

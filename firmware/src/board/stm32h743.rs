@@ -152,6 +152,9 @@ impl Flash for SecondBank {
     }
 }
 
+/// Divider of the 800 MHz in PLL 1 for the clock of FDCAN, 80 MHz: below that of its bus.
+const CAN_DIVIDER: u8 = 10;
+
 /// Starts PLL 1 at 400 MHz at voltage scale 1: from the external clock if its frequency agrees with the board file,
 /// else from the internal oscillator. Buses run at 200 MHz, peripherals at 100 MHz.
 fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
@@ -187,9 +190,14 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
         let w = if is_external { w.pllsrc().hse() } else { w.pllsrc().hsi() };
         w.divm1().set(divider as u8)
     });
-    clocks.pllcfgr().modify(|_, w| w.pll1vcosel().wide_vco().pll1rge().set(range as u8).divp1en().enabled());
-    // SAFETY: the register holds factor - 1; the build has held the factor against the range of the reference manual.
-    clocks.pll1divr().modify(|_, w| unsafe { w.divn1().bits(factor as u16 - 1) }.divp1().div2());
+    clocks
+        .pllcfgr()
+        .modify(|_, w| w.pll1vcosel().wide_vco().pll1rge().set(range as u8).divp1en().enabled().divq1en().enabled());
+    clocks.pll1divr().modify(|_, w| {
+        // SAFETY: the register holds factor - 1 and divider - 1; the build has held the factor against the range of the
+        // reference manual.
+        unsafe { w.divn1().bits(factor as u16 - 1).divq1().bits(CAN_DIVIDER - 1) }.divp1().div2()
+    });
     clocks.cr().modify(|_, w| w.pll1on().set_bit());
     if !wait_until(|| clocks.cr().read().pll1rdy().bit_is_set()) {
         return Clock::of(ClockSource::Failed);

@@ -257,10 +257,9 @@ impl Board {
         self.ram_bytes - MIN_STACK_BYTES
     }
 
-    /// CAN line that the firmware has a driver for, or the reason why there is none.
+    /// CAN line, or the reason why there is none.
     pub fn can_line(&self) -> Result<&Can, &'static str> {
-        let can = self.can.as_ref().ok_or("its board file has no [can]")?;
-        self.chip.has_can_driver().then_some(can).ok_or("the firmware has no driver for its chip's CAN")
+        self.can.as_ref().ok_or("its board file has no [can]")
     }
 
     /// Sentence about a bit rate that is less accurate than CAN allows, since the board has no crystal and no external

@@ -134,8 +134,8 @@ fn missing_role_names_boards_that_have_it() {
     joint(&["image", "q1", "--drive", "odrive"]).refused(&["--drive is for the role drive, not plant", "--role drive"]);
     joint(&["image", "q1", "--role", "loop", "--id", "3"]).refused(&["--id is for the role drive, not loop"]);
     joint(&["image", "q1", "--role", "drive", "--drive", "acme"]).refused(&["acme", "odrive3", "cia402"]);
-    let drive = ["image", "q1", "--role", "drive", "--board", "nucleo-h743zi"];
-    joint(&drive).refused(&["no driver for its chip's CAN", "nucleo-g474re, odrive-3.6"]);
+    let drive = ["image", "q1", "--role", "drive", "--board", "feather-f405"];
+    joint(&drive).refused(&["no [can]", "nucleo-g474re, nucleo-h743zi, odrive-3.6"]);
     let spi = ["image", "q1", "--role", "spi-observer", "--board", "nucleo-h743zi"];
     joint(&spi).refused(&["nucleo-h743zi is no slave on SPI", "olimex-h405, nucleo-g474re", "--role observer"]);
 }

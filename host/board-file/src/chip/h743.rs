@@ -40,6 +40,8 @@ pub(super) const FACTS: Facts = Facts {
         ImageSize { role: "plant", flash: 132_064, ram: 10_508 },
         ImageSize { role: "observer", flash: 177_952, ram: 26_140 },
         ImageSize { role: "loop", flash: 221_304, ram: 24_324 },
+        // moteus.
+        ImageSize { role: "drive", flash: 116_180, ram: 5_268 },
     ],
     variants: &[
         Variant { name: "STM32H743ZI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: LQFP144 }] },

@@ -92,11 +92,6 @@ impl Chip {
         self.facts().spi.is_ok()
     }
 
-    /// Returns whether the firmware has a driver for the chip's CAN.
-    pub fn has_can_driver(self) -> bool {
-        self != Self::Stm32h743
-    }
-
     /// Lowest and highest frequency of a crystal, or of an external clock signal [Hz].
     pub fn oscillator_limits(self, crystal: bool) -> (u32, u32) {
         if crystal { self.facts().crystal } else { self.facts().signal }

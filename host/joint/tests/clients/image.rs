@@ -59,3 +59,10 @@ fn moteus_client_drives_the_image() {
     std::fs::write(&light, text_of_light).expect("written");
     image_passes("moteus", "moteus", "moteus-r4", text(&light), &["slcan"]);
 }
+
+/// The other kind of FDCAN, whose message RAM the firmware lays out.
+#[test]
+#[ignore = "builds an image and the model of the boards' registers: minutes"]
+fn moteus_client_drives_the_h743_image() {
+    image_passes("moteus", "moteus", "nucleo-h743zi", "q1", &["slcan"]);
+}

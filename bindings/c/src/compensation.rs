@@ -23,8 +23,7 @@ pub const JOINT_COMPENSATION_WORDS: usize = 65;
 
 /// 32-bit words of a compensation's saved state.
 pub const JOINT_COMPENSATION_STATE_WORDS: usize = 143;
-const _: () =
-    assert!(JOINT_COMPENSATION_STATE_WORDS == HEAD + Compensation::<'static, f32>::STATE_LAYOUT.words);
+const _: () = assert!(JOINT_COMPENSATION_STATE_WORDS == HEAD + Compensation::<'static, f32>::STATE_LAYOUT.words);
 
 /// Storage of a compensation. Its content is the library's own.
 #[repr(C)]
@@ -342,9 +341,7 @@ pub unsafe extern "C" fn joint_compensation_save_state(
         let object = unsafe { open_shared::<Compensation<'static, f32>>(compensation) }?;
         let identity = identity(object.tables_digest());
         // SAFETY: as above.
-        unsafe {
-            save::<JOINT_COMPENSATION_STATE_WORDS>(state, words, &identity, |to| object.value.write_state(to))
-        }
+        unsafe { save::<JOINT_COMPENSATION_STATE_WORDS>(state, words, &identity, |to| object.value.write_state(to)) }
     })
     .into()
 }
@@ -363,9 +360,7 @@ pub unsafe extern "C" fn joint_compensation_load_state(
         let object = unsafe { open::<Compensation<'static, f32>>(compensation) }?;
         let identity = identity(object.tables_digest());
         // SAFETY: as above.
-        unsafe {
-            load::<JOINT_COMPENSATION_STATE_WORDS>(state, words, &identity, |from| object.value.read_state(from))
-        }
+        unsafe { load::<JOINT_COMPENSATION_STATE_WORDS>(state, words, &identity, |from| object.value.read_state(from)) }
     })
     .into()
 }

@@ -242,7 +242,9 @@ pub unsafe extern "C" fn joint_observer_save_state(
         let write = |to: &mut Writer| {
             any.stepped.write(to);
             // SAFETY: `has_maps` tells the kind of the observer.
-            unsafe { if any.has_maps { (*observer).write_state(to) } else { (*observer.cast::<Plain>()).write_state(to) } }
+            unsafe {
+                if any.has_maps { (*observer).write_state(to) } else { (*observer.cast::<Plain>()).write_state(to) }
+            }
         };
         // SAFETY: the caller's promise, as required by the header.
         unsafe { save::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity(tables), write) }
@@ -269,7 +271,9 @@ pub unsafe extern "C" fn joint_observer_load_state(
         let read = |from: &mut Reader| {
             any.stepped = bool::read(from);
             // SAFETY: `has_maps` tells the kind of the observer.
-            unsafe { if any.has_maps { (*observer).read_state(from) } else { (*observer.cast::<Plain>()).read_state(from) } }
+            unsafe {
+                if any.has_maps { (*observer).read_state(from) } else { (*observer.cast::<Plain>()).read_state(from) }
+            }
         };
         // SAFETY: the caller's promise, as required by the header.
         unsafe { load::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity(tables), read) }

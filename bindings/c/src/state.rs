@@ -111,7 +111,9 @@ mod tests {
     fn saved() -> [u32; 11] {
         let mut words = [9; 11];
         // SAFETY: a place of this many words.
-        let result = unsafe { save::<11>(words.as_mut_ptr(), 11, &IDENTITY, |to| [4, 6].into_iter().for_each(|word| to.word(word))) };
+        let result = unsafe {
+            save::<11>(words.as_mut_ptr(), 11, &IDENTITY, |to| [4, 6].into_iter().for_each(|word| to.word(word)))
+        };
         assert_eq!(result, Ok(()));
         words
     }
@@ -133,8 +135,14 @@ mod tests {
         let refused = |identity: Identity| loaded(&saved(), &identity).unwrap_err();
         assert_eq!(refused(Identity { kind: 4, ..IDENTITY }), JointStatus::NotAState);
         assert_eq!(refused(Identity { tables: 8, ..IDENTITY }), JointStatus::OtherTables);
-        assert_eq!(refused(Identity { layout: Layout { digest: 6, ..LAYOUT }, ..IDENTITY }), JointStatus::WrongStateVersion);
-        assert_eq!(refused(Identity { layout: Layout { words: 1, ..LAYOUT }, ..IDENTITY }), JointStatus::WrongStateVersion);
+        assert_eq!(
+            refused(Identity { layout: Layout { digest: 6, ..LAYOUT }, ..IDENTITY }),
+            JointStatus::WrongStateVersion
+        );
+        assert_eq!(
+            refused(Identity { layout: Layout { words: 1, ..LAYOUT }, ..IDENTITY }),
+            JointStatus::WrongStateVersion
+        );
     }
 
     #[test]

@@ -16,7 +16,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { BUFFERS = 20, CALLS = 12 };
+enum { BUFFERS = 22, CALLS = 12 };
 
 /* Argument of a call: place, size, and content before the call. */
 typedef struct Buffer {
@@ -130,7 +130,7 @@ int main(int count, char **arguments) {
     JointTablesFacts *facts;
     uint64_t *tables, *damaged, *digest;
     unsigned char *memory;
-    uint32_t *state_words;
+    uint32_t *state_words, *observer_words, *compensation_words;
     float *speeds;
     unsigned long sequence;
     state = (count > 2 ? strtoull(arguments[2], NULL, 10) : 1u) * 0x9e3779b97f4a7c15ull + 1u;
@@ -152,6 +152,8 @@ int main(int count, char **arguments) {
     digest = (uint64_t *)guarded(sizeof(uint64_t));
     memory = (unsigned char *)guarded(JOINT_MEMORY_BYTES);
     state_words = (uint32_t *)guarded(JOINT_PLANT_STATE_WORDS * sizeof(uint32_t));
+    observer_words = (uint32_t *)guarded(JOINT_OBSERVER_STATE_WORDS * sizeof(uint32_t));
+    compensation_words = (uint32_t *)guarded(JOINT_COMPENSATION_STATE_WORDS * sizeof(uint32_t));
     speeds = (float *)guarded(2 * sizeof(float));
     tables = (uint64_t *)guarded(sizeof tables_of_test);
     memcpy(tables, tables_of_test, sizeof tables_of_test);
@@ -169,7 +171,7 @@ int main(int count, char **arguments) {
             JointObserver *const observer = observers[which];
             const uint64_t *from = tables;
             JointStatus status;
-            uint32_t kind = chance(25);
+            uint32_t kind = chance(29);
             is_wrong = 0;
             /* Most of the first calls start objects. */
             if (call < 5 && chance(4) != 0) {
@@ -365,6 +367,46 @@ int main(int count, char **arguments) {
                 /* The program does not track whether the words are a state, and a finite one. */
                 const int sure = is_wrong || !started[4];
                 status = joint_plant_load((JointPlant *)to, from, words);
+                is_wrong = sure || status != JOINT_STATUS_OK;
+                break;
+            }
+            case 24: {
+                void *const to = pointer(observer, plant);
+                is_wrong |= !started[which];
+                status = joint_observer_save_state((JointObserver *)to, (uint32_t *)pointer(observer_words, NULL),
+                                                   size(JOINT_OBSERVER_STATE_WORDS));
+                break;
+            }
+            case 25: {
+                void *const to = pointer(compensation, probe);
+                is_wrong |= !started[2];
+                status = joint_compensation_save_state((JointCompensation *)to, (uint32_t *)pointer(compensation_words, NULL),
+                                                       size(JOINT_COMPENSATION_STATE_WORDS));
+                break;
+            }
+            case 26: {
+                void *const to = pointer(observer, plant);
+                uint32_t *const words = (uint32_t *)pointer(observer_words, NULL);
+                const size_t of = size(JOINT_OBSERVER_STATE_WORDS);
+                const uint32_t at = chance(JOINT_OBSERVER_STATE_WORDS), bit = chance(4) == 0 ? 1u << chance(32) : 0u;
+                /* The program does not track whether the words are a state of this kind of observer. */
+                const int sure = is_wrong || !started[which] || bit != 0u;
+                observer_words[at] ^= bit;
+                status = joint_observer_load_state((JointObserver *)to, words, of);
+                observer_words[at] ^= bit;
+                is_wrong = sure || status != JOINT_STATUS_OK;
+                stepped[which] |= status == JOINT_STATUS_OK;
+                break;
+            }
+            case 27: {
+                void *const to = pointer(compensation, plant);
+                uint32_t *const words = (uint32_t *)pointer(compensation_words, NULL);
+                const size_t of = size(JOINT_COMPENSATION_STATE_WORDS);
+                const uint32_t at = chance(JOINT_COMPENSATION_STATE_WORDS), bit = chance(4) == 0 ? 1u << chance(32) : 0u;
+                const int sure = is_wrong || !started[2] || bit != 0u;
+                compensation_words[at] ^= bit;
+                status = joint_compensation_load_state((JointCompensation *)to, words, of);
+                compensation_words[at] ^= bit;
                 is_wrong = sure || status != JOINT_STATUS_OK;
                 break;
             }

@@ -35,6 +35,7 @@ static JointWiringVerdicts verdicts;
 static uint64_t digest;
 static uint8_t memory[JOINT_MEMORY_BYTES];
 static uint32_t state[JOINT_PLANT_STATE_WORDS];
+static uint32_t observer_state[JOINT_OBSERVER_STATE_WORDS], compensation_state[JOINT_COMPENSATION_STATE_WORDS];
 static float link_torque, speeds[2];
 static JointObserver other;
 
@@ -54,6 +55,18 @@ static JointStatus observer_step(void) { return joint_observer_step(&run.observe
 static JointStatus observer_estimates(void) { return joint_observer_estimates(&run.observer, &run.estimates); }
 static JointStatus observer_save(void) { return joint_observer_save(&run.observer, memory, sizeof memory); }
 static JointStatus observer_load(void) { return joint_observer_load(&other, memory, sizeof memory); }
+static JointStatus observer_save_state(void) {
+    return joint_observer_save_state(&run.observer, observer_state, JOINT_OBSERVER_STATE_WORDS);
+}
+static JointStatus observer_load_state(void) {
+    return joint_observer_load_state(&run.observer, observer_state, JOINT_OBSERVER_STATE_WORDS);
+}
+static JointStatus compensation_save_state(void) {
+    return joint_compensation_save_state(&run.compensation, compensation_state, JOINT_COMPENSATION_STATE_WORDS);
+}
+static JointStatus compensation_load_state(void) {
+    return joint_compensation_load_state(&run.compensation, compensation_state, JOINT_COMPENSATION_STATE_WORDS);
+}
 static JointStatus follow(void) {
     return joint_compensation_follow(&run.compensation, &run.observer, &now, &ahead, &run.torque);
 }
@@ -106,6 +119,10 @@ static Stack ending[] = {
     {"joint_wiring_verdicts", check_verdicts, 0},
     {"joint_observer_save", observer_save, 0},
     {"joint_observer_load", observer_load, 0},
+    {"joint_observer_save_state", observer_save_state, 0},
+    {"joint_observer_load_state", observer_load_state, 0},
+    {"joint_compensation_save_state", compensation_save_state, 0},
+    {"joint_compensation_load_state", compensation_load_state, 0},
     {"joint_plant_step_with_link", plant_step_with_link, 0},
     {"joint_plant_shift", plant_shift, 0},
     {"joint_plant_save", plant_save, 0},

@@ -13,12 +13,17 @@ use table_blob::Blob;
 
 use crate::estimates::JointContact;
 use crate::fp_mode;
-use crate::object::{Kind, Storage, start, started_object};
+use crate::object::{Kind, Storage, open, open_shared, start, started_object};
 use crate::observer::{AnyObserver, JointObserver};
+use crate::state::{HEAD, Identity, load, save};
 use crate::status::JointStatus;
 
 /// 64-bit words of a compensation.
 pub const JOINT_COMPENSATION_WORDS: usize = 65;
+
+/// 32-bit words of a compensation's saved state.
+pub const JOINT_COMPENSATION_STATE_WORDS: usize = 143;
+const _: () = assert!(JOINT_COMPENSATION_STATE_WORDS == HEAD + Compensation::<'static, f32>::STATE_LAYOUT.words);
 
 /// Storage of a compensation. Its content is the library's own.
 #[repr(C)]
@@ -315,4 +320,47 @@ unsafe fn step(
     // SAFETY: aligned, not NULL, and valid for writes.
     unsafe { JointTorque::write_to(&shaped, torque) };
     JointStatus::Ok
+}
+
+/// Identity of the state of a compensation.
+fn identity(tables: u64) -> Identity {
+    let layout = Compensation::<'static, f32>::STATE_LAYOUT;
+    Identity { kind: Compensation::<'static, f32>::MARK, layout, tables }
+}
+
+/// Copies the whole state of a compensation, without addresses. `words` is JOINT_COMPENSATION_STATE_WORDS.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_compensation_save_state(
+    compensation: *const JointCompensation,
+    state: *mut u32,
+    words: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open_shared::<Compensation<'static, f32>>(compensation) }?;
+        let identity = identity(object.tables_digest());
+        // SAFETY: as above.
+        unsafe { save::<JOINT_COMPENSATION_STATE_WORDS>(state, words, &identity, |to| object.value.write_state(to)) }
+    })
+    .into()
+}
+
+/// Continues from a saved state of a compensation of the same tables, in this process or another. `words` is
+/// JOINT_COMPENSATION_STATE_WORDS. Equal states continue with equal bits.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_compensation_load_state(
+    compensation: *mut JointCompensation,
+    state: *const u32,
+    words: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open::<Compensation<'static, f32>>(compensation) }?;
+        let identity = identity(object.tables_digest());
+        // SAFETY: as above.
+        unsafe { load::<JOINT_COMPENSATION_STATE_WORDS>(state, words, &identity, |from| object.value.read_state(from)) }
+    })
+    .into()
 }

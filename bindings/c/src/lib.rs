@@ -21,6 +21,7 @@ mod object;
 mod observer;
 mod plant;
 mod probe;
+mod state;
 mod status;
 mod tables;
 mod version;

@@ -28,6 +28,11 @@ pub struct Object<K> {
 }
 
 impl<K> Object<K> {
+    /// Digest of the tables that the object was started from.
+    pub fn tables_digest(&self) -> u64 {
+        self.tables_digest
+    }
+
     /// Returns whether another object was started from the same tables, or from tables with the same digest.
     #[inline(always)]
     pub fn has_tables_of<L>(&self, other: &Object<L>) -> bool {

@@ -4,12 +4,14 @@
 use core::mem::MaybeUninit;
 use core::ptr;
 
+use model_core::numbers::state_words::{Layout, Reader, StateWords, Writer};
 use model_core::observer::{Estimates, MAPPED, MEMORY_BYTES, Memory, Observer, PLAIN, Samples};
 use table_blob::Blob;
 
 use crate::estimates::{JointEstimates, JointSamples};
 use crate::fp_mode;
 use crate::object::{Kind, Storage, open, open_shared, read, start, usable};
+use crate::state::{HEAD, Identity, load, save};
 use crate::status::JointStatus;
 
 /// 64-bit words of an observer.
@@ -17,6 +19,13 @@ pub const JOINT_OBSERVER_WORDS: usize = 275;
 /// Bytes of an observer's saved memory.
 pub const JOINT_MEMORY_BYTES: usize = 544;
 const _: () = assert!(JOINT_MEMORY_BYTES == MEMORY_BYTES);
+
+/// 32-bit words of an observer's saved state.
+pub const JOINT_OBSERVER_STATE_WORDS: usize = 621;
+const _: () = assert!(JOINT_OBSERVER_STATE_WORDS == HEAD + STEPPED.words + Mapped::STATE_LAYOUT.words);
+const _: () = assert!(Mapped::STATE_LAYOUT.words >= Plain::STATE_LAYOUT.words);
+/// Layout of the word that tells whether the observer was stepped.
+const STEPPED: Layout = bool::LAYOUT;
 
 /// Storage of an observer. Its content is the library's own.
 #[repr(C)]
@@ -87,8 +96,16 @@ impl AnyObserver {
             unsafe { if self.has_maps { (*observer).load(memory) } else { (*observer.cast::<Plain>()).load(memory) } };
         Ok(loaded?)
     }
+
+    /// Identity of the state of an observer of a kind.
+    fn identity<const P: usize>(tables: u64) -> Identity {
+        let layout = STEPPED.with("observer", Observer::<'static, f32, P>::STATE_LAYOUT);
+        Identity { kind: Self::MARK ^ P as u32, layout, tables }
+    }
 }
 
+/// Observer with maps.
+type Mapped = Observer<'static, f32, MAPPED>;
 /// Observer without maps.
 type Plain = Observer<'static, f32, PLAIN>;
 
@@ -204,6 +221,62 @@ pub unsafe extern "C" fn joint_observer_load(
         // SAFETY: not NULL, of this size, and disjoint from the object.
         let memory = unsafe { core::slice::from_raw_parts(memory, bytes) };
         object.value.load(memory)
+    })
+    .into()
+}
+
+/// Copies the whole state of an observer, without addresses. `words` is JOINT_OBSERVER_STATE_WORDS.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_observer_save_state(
+    observer: *const JointObserver,
+    state: *mut u32,
+    words: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open_shared::<AnyObserver>(observer) }?;
+        let (any, tables) = (&object.value, object.tables_digest());
+        let observer = any.observer.as_ptr();
+        let identity = if any.has_maps { AnyObserver::identity::<MAPPED> } else { AnyObserver::identity::<PLAIN> };
+        let write = |to: &mut Writer| {
+            any.stepped.write(to);
+            // SAFETY: `has_maps` tells the kind of the observer.
+            unsafe {
+                if any.has_maps { (*observer).write_state(to) } else { (*observer.cast::<Plain>()).write_state(to) }
+            }
+        };
+        // SAFETY: the caller's promise, as required by the header.
+        unsafe { save::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity(tables), write) }
+    })
+    .into()
+}
+
+/// Continues from a saved state of an observer of the same tables, in this process or another, before or after steps.
+/// `words` is JOINT_OBSERVER_STATE_WORDS. Equal states continue with equal bits.
+#[unsafe(no_mangle)]
+#[must_use]
+pub unsafe extern "C" fn joint_observer_load_state(
+    observer: *mut JointObserver,
+    state: *const u32,
+    words: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's promise, as required by the header.
+        let object = unsafe { open::<AnyObserver>(observer) }?;
+        let tables = object.tables_digest();
+        let any = &mut object.value;
+        let observer = any.observer.as_mut_ptr();
+        let identity = if any.has_maps { AnyObserver::identity::<MAPPED> } else { AnyObserver::identity::<PLAIN> };
+        let read = |from: &mut Reader| {
+            any.stepped = bool::read(from);
+            // SAFETY: `has_maps` tells the kind of the observer.
+            unsafe {
+                if any.has_maps { (*observer).read_state(from) } else { (*observer.cast::<Plain>()).read_state(from) }
+            }
+        };
+        // SAFETY: the caller's promise, as required by the header.
+        unsafe { load::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity(tables), read) }
     })
     .into()
 }

@@ -29,7 +29,7 @@ pub enum JointStatus {
     DamagedTables = 8,
     /// The tables were made without this part.
     MissingTables = 9,
-    /// Two objects were started from different tables.
+    /// Two objects, or an object and a state, are of different tables.
     OtherTables = 10,
     /// The data are no memory of an observer.
     NotAMemory = 11,
@@ -47,6 +47,12 @@ pub enum JointStatus {
     OtherHeader = 17,
     /// The observer has been stepped; a memory is loaded before the first step.
     AlreadyStepped = 18,
+    /// The data are no state of an object of this kind.
+    NotAState = 19,
+    /// The state has the layout of another version of the library.
+    WrongStateVersion = 20,
+    /// The digest of the state does not match: it is damaged.
+    DamagedState = 21,
 }
 
 impl From<BlobError> for JointStatus {
@@ -80,7 +86,7 @@ impl From<Result<(), JointStatus>> for JointStatus {
 }
 
 /// Names and texts by number.
-const TEXTS: [[&core::ffi::CStr; 2]; 19] = [
+const TEXTS: [[&core::ffi::CStr; 2]; 22] = [
     [c"JOINT_STATUS_OK", c"done"],
     [c"JOINT_STATUS_NULL_POINTER", c"a pointer is NULL: give the object that the header asks for"],
     [c"JOINT_STATUS_MISALIGNED", c"a pointer is not aligned for its type: use the header's types, not bytes"],
@@ -91,7 +97,7 @@ const TEXTS: [[&core::ffi::CStr; 2]; 19] = [
     [c"JOINT_STATUS_WRONG_TABLES_VERSION", c"the tables have another version than the library: write them again with its `joint tables`"],
     [c"JOINT_STATUS_DAMAGED_TABLES", c"the tables are damaged: flash them again"],
     [c"JOINT_STATUS_MISSING_TABLES", c"the tables were made without this part: write them again with it"],
-    [c"JOINT_STATUS_OTHER_TABLES", c"two objects were started from different tables: start both from the same"],
+    [c"JOINT_STATUS_OTHER_TABLES", c"two objects, or an object and a state, are of different tables: start both from the same"],
     [c"JOINT_STATUS_NOT_A_MEMORY", c"this is no memory of an observer: save one first"],
     [c"JOINT_STATUS_WRONG_MEMORY_VERSION", c"the memory is of another version of the observer: let it learn again and save anew"],
     [c"JOINT_STATUS_DAMAGED_MEMORY", c"the memory is damaged: load a copy, or let the observer learn again"],
@@ -100,6 +106,9 @@ const TEXTS: [[&core::ffi::CStr; 2]; 19] = [
     [c"JOINT_STATUS_FRACTION_OUT_OF_RANGE", c"a fraction of a turn exceeds one turn: give turns, not counts, degrees or radians, and whole turns in `turns`"],
     [c"JOINT_STATUS_OTHER_HEADER", c"the caller was compiled with a header of another version: take header and library from one archive"],
     [c"JOINT_STATUS_ALREADY_STEPPED", c"the observer was already stepped: start it again, and load before the first step"],
+    [c"JOINT_STATUS_NOT_A_STATE", c"this is no state of an object of this kind, or it is of an observer with or without maps: save one first"],
+    [c"JOINT_STATUS_WRONG_STATE_VERSION", c"the state is of another version of the library: start the object again"],
+    [c"JOINT_STATUS_DAMAGED_STATE", c"the state is damaged: load a copy, or start the object again"],
 ];
 
 fn status_text(status: u32, which: usize) -> *const c_char {

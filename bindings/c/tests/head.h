@@ -42,6 +42,8 @@
  *     joint_wiring_start 480
  *     joint_plant_save 448
  *     joint_plant_outputs, joint_compensation_start 416
+ *     joint_observer_save_state, joint_observer_load_state 300
+ *     joint_compensation_save_state, joint_compensation_load_state 300
  *     joint_tables_facts, joint_plant_shift 256
  *     joint_observer_estimates, joint_probe_start 208
  *     joint_plant_samples 160

@@ -58,7 +58,10 @@ const TEMPLATE: &str = r#"<!-- A joint on a stand, with its gears and their back
   <option timestep="0.001" integrator="implicitfast"/>
   <extension>
     <plugin plugin="@PLUGIN@">
-      <instance name="joint"/>
+      <instance name="joint">
+        <!-- With observer and compensation in the loop, the control is the angle of the link [rad]: let ctrlrange be its range.
+        <config key="controller" value="position"/> -->
+      </instance>
     </plugin>
   </extension>
   <worldbody>
@@ -72,12 +75,14 @@ const TEMPLATE: &str = r#"<!-- A joint on a stand, with its gears and their back
     </body>
   </worldbody>
   <actuator>
-    <!-- The control is the torque at the motor's shaft [N m]. -->
+    <!-- The control is the torque at the motor's shaft [N m], without a controller. -->
     <plugin name="motor" joint="hinge" plugin="@PLUGIN@" instance="joint" ctrllimited="true" ctrlrange="-@LIMIT@ @LIMIT@"/>
   </actuator>
   <sensor>
     <!-- Angle [rad] and speed [rad/s] of the motor, of the link; gap [m]; contact (1 drive side, -1 back side, 0 gap);
-         wind-up [m]; counts of motor and output encoder; torque in the air gap; torque of the gears on the link [N m]. -->
+         wind-up [m]; counts of motor and output encoder; torque in the air gap; torque of the gears on the link [N m].
+         With a controller, then: commanded torque [N m]; estimated gap [m], 1 if valid; half-backlash [m], 1 if valid;
+         contact, 1 if valid; angle [rad] and speed [rad/s] of the link; load torque [N m]; share of the compensation. -->
     <plugin name="joint" plugin="@PLUGIN@" instance="joint"/>
   </sensor>
 </mujoco>

@@ -20,7 +20,7 @@ use report::{folder, output};
 
 Communication steps of an FMU and steps of MuJoCo are multiples of the control period [s]; others are refused. An FMU holds
 a binary for this machine, and its sources with a CMakeLists.txt for other machines. Two exports of one joint give the same
-bytes.")]
+bytes. A plug-in has observer and compensation too: the key `controller` of an instance in the model puts them into the loop.")]
 pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]

@@ -11,6 +11,7 @@
 
 use super::crossing_timing::CrossingTiming;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Path over time.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,6 +23,8 @@ pub(super) struct CrossingPath<T: Real> {
     crossing: CrossingTiming<T>,
     inverse_ramp: T,
 }
+
+state_words! { struct CrossingPath<T> { start, end, steady, crossing, inverse_ramp } }
 
 impl<T: Real> CrossingPath<T> {
     /// Creates a path from position and rate to position and rate.

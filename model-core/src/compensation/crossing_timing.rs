@@ -11,6 +11,7 @@
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Times of a crossing.
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,6 +21,8 @@ pub(crate) struct CrossingTiming<T: Real> {
     /// Duration of each of the two ramps, to and from the steady speed [s]; at most half of `duration`.
     pub ramp: T,
 }
+
+state_words! { struct CrossingTiming<T> { duration, ramp } }
 
 impl<T: Real> CrossingTiming<T> {
     /// Crossing of a gap of twice `half`. The force on planets struck on the way is at most a share of the rated force

@@ -23,6 +23,7 @@ use super::thresholds::{DemandThresholds, EstimateBounds};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Demand of a motion on the teeth, with the estimates that it follows from.
 #[derive(Debug, Clone)]
@@ -42,6 +43,12 @@ pub(super) struct DemandEstimator<T: Real> {
     planned: Option<PlannedTorque<T>>,
 }
 
+state_words! {
+    struct DemandEstimator<T> {
+        inertia, load, peak_square, transmitted, torque, friction_torque, planned,
+    }
+}
+
 /// Torque that a set-point asks for.
 #[derive(Debug, Clone, Copy)]
 struct PlannedTorque<T: Real> {
@@ -50,6 +57,8 @@ struct PlannedTorque<T: Real> {
     /// Share and sign of dry friction at the planned speed, -1 to 1.
     direction: T,
 }
+
+state_words! { struct PlannedTorque<T> { inertia_torques, direction } }
 
 impl<T: Real> DemandEstimator<T> {
     const THRESHOLDS: DemandThresholds<T> = DemandThresholds::TUNED;

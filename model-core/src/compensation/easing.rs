@@ -8,6 +8,7 @@ use super::thresholds::EasingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{clamp, deadband};
+use crate::numbers::state_words::state_words;
 
 /// State of the easing.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +22,8 @@ pub(super) struct Easing<T: Real> {
     /// True if the link gave way: the load is more than friction, and is held until the joint has moved.
     gave_way: bool,
 }
+
+state_words! { struct Easing<T> { load, steady_time, start_error, gave_way } }
 
 impl<T: Real> Easing<T> {
     const THRESHOLDS: EasingThresholds<T> = EasingThresholds::TUNED;

@@ -26,6 +26,7 @@ use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Events of a period.
 struct DetectedEvents {
@@ -58,6 +59,13 @@ pub(super) struct FlankControl<T: Real> {
     unneeded: T,
     /// True if the motor rested in the middle of the gap in the previous period.
     centred: bool,
+}
+
+state_words! {
+    struct FlankControl<T> {
+        flank, stage, path, origin, elapsed, landing_opening, rise, impulse_deficit, hysteresis, requested, unneeded,
+        centred,
+    }
 }
 
 impl<T: Real> FlankControl<T> {

@@ -20,6 +20,7 @@ use crate::compensation::tables::CompensationTables;
 use crate::gears::sign;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// State of impedance mode.
 #[derive(Debug, Clone)]
@@ -28,6 +29,8 @@ pub(super) struct ImpedanceLaw<T: Real> {
     /// Prediction of the next start of the set-point.
     start: StartPrediction<T>,
 }
+
+state_words! { struct ImpedanceLaw<T> { stream, start } }
 
 impl<T: Real> ImpedanceLaw<T> {
     pub fn new() -> Self {

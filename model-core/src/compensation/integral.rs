@@ -10,6 +10,7 @@ use super::torque_swing::TorqueSwing;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Integral of a PID on the motor position, and detector of a swinging torque.
 #[derive(Debug, Clone)]
@@ -18,6 +19,8 @@ pub(super) struct Integral<T: Real> {
     torque: T,
     swing: TorqueSwing<T>,
 }
+
+state_words! { struct Integral<T> { torque, swing } }
 
 impl<T: Real> Integral<T> {
     pub fn new() -> Self {

@@ -36,6 +36,7 @@ use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// State of the PID, its feed-forward and the inverse of the backlash.
 #[derive(Debug, Clone)]
@@ -58,6 +59,12 @@ pub(super) struct BacklashInverse<T: Real> {
     /// True if a flank was pressed long enough since the link last left a flank.
     has_settled: bool,
     demand: DemandEstimator<T>,
+}
+
+state_words! {
+    struct BacklashInverse<T> {
+        integral, shift, share, edges, anchor, target_shift, last_torque, pressed, has_settled, demand,
+    }
 }
 
 impl<T: Real> BacklashInverse<T> {

@@ -15,6 +15,7 @@ use super::thresholds::LoadThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{clamp, deadband};
+use crate::numbers::state_words::state_words;
 use crate::observer::Estimates;
 
 /// Gravity torque and dry friction of the load torque.
@@ -41,6 +42,12 @@ pub(super) struct LoadModel<T: Real> {
     swing: PayloadSwing<T>,
 }
 
+state_words! {
+    struct LoadModel<T> {
+        filter, speed_error, speed, rate, free_load, peak_load, last_direction, creep, saturation, swing,
+    }
+}
+
 /// Gravity torque before the link began to creep.
 #[derive(Debug, Clone, Copy)]
 struct Creep<T: Real> {
@@ -48,6 +55,8 @@ struct Creep<T: Real> {
     /// Growth of the gravity torque's variance while the link creeps.
     variance: T,
 }
+
+state_words! { struct Creep<T> { gravity_torque, variance } }
 
 impl<T: Real> LoadModel<T> {
     const THRESHOLDS: LoadThresholds<T> = LoadThresholds::TUNED;

@@ -11,6 +11,7 @@
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Gravity torque and dry friction with their covariance.
 #[derive(Debug, Clone)]
@@ -22,6 +23,8 @@ pub(super) struct LoadFrictionFilter<T: Real> {
     /// Variances of gravity torque and friction and their covariance, in the unit of the measurement's variance.
     variance: [T; 3],
 }
+
+state_words! { struct LoadFrictionFilter<T> { gravity_torque, friction, variance } }
 
 impl<T: Real> LoadFrictionFilter<T> {
     /// Starts from a known friction, and the variances of gravity torque and friction.

@@ -27,6 +27,7 @@ use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Monitor of the compensated loop.
 #[derive(Debug, Clone)]
@@ -55,6 +56,13 @@ pub(super) struct LoopMonitor<T: Real> {
     next_retry_time: T,
     /// Time for which the compensation has acted since the last trip, saturating [s].
     acting_time: T,
+}
+
+state_words! {
+    struct LoopMonitor<T> {
+        flank, change_weight, unexplained, load, mean_square, granted_square, last_error, judged_time, worst_error,
+        remaining_trip, next_retry_time, acting_time,
+    }
 }
 
 /// Quantities of a period that the monitor judges.

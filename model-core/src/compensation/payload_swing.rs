@@ -12,6 +12,7 @@ use super::thresholds::PayloadSwingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{clamp, deadband};
+use crate::numbers::state_words::state_words;
 
 /// Detector of a swing of the load.
 #[derive(Debug, Clone)]
@@ -27,6 +28,8 @@ pub(super) struct PayloadSwing<T: Real> {
     /// Remaining time for which the load counts as swinging [s].
     remaining_time: T,
 }
+
+state_words! { struct PayloadSwing<T> { means, side, time_since_change, changes, remaining_time } }
 
 impl<T: Real> PayloadSwing<T> {
     const THRESHOLDS: PayloadSwingThresholds<T> = PayloadSwingThresholds::TUNED;

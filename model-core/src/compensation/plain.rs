@@ -17,6 +17,7 @@ use super::thresholds::PlainThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Integral of the PID, and motor position relative to the link.
 #[derive(Debug, Clone)]
@@ -28,6 +29,8 @@ pub(super) struct PlainControl<T: Real> {
     /// `None` in impedance mode, while the link is seen, and while the half-gap is unknown.
     expected_flank: Option<T>,
 }
+
+state_words! { struct PlainControl<T> { integral, motor_lead, expected_flank } }
 
 impl<T: Real> PlainControl<T> {
     const THRESHOLDS: PlainThresholds<T> = PlainThresholds::TUNED;

@@ -29,6 +29,7 @@ use crate::compensation::tables::CompensationTables;
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{clamp, deadband};
+use crate::numbers::state_words::state_words;
 
 /// State of position mode.
 #[derive(Debug, Clone)]
@@ -53,6 +54,13 @@ pub(super) struct PositionLaw<T: Real> {
     /// Largest acceleration of the set-point since the last rest: few planners brake harder than they accelerate
     /// [rad/s^2].
     peak_acceleration: T,
+}
+
+state_words! {
+    struct PositionLaw<T> {
+        last_acceleration, deadband, requested_flank, time_since_request, measured_demand, start, easing,
+        acceleration_step, peak_acceleration,
+    }
 }
 
 /// Changes of the set-point within a time: by the preview or, without a preview, by the jerk.

@@ -2,6 +2,7 @@
 
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Angle over any number of turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -12,6 +13,8 @@ pub struct Position<T: Real = f32> {
     /// Remaining part of a turn [turns].
     pub fraction: T,
 }
+
+state_words! { struct Position<T> { turns, fraction } }
 
 impl<T: Real> Position<T> {
     /// Difference to another angle, `self` minus the other [turns].
@@ -70,6 +73,8 @@ pub struct ImpedancePoint<T: Real = f32> {
     /// Damping [N m s/rad].
     pub damping: T,
 }
+
+state_words! { struct ImpedancePoint<T> { position, speed, torque, stiffness, damping } }
 
 /// Command of one control period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,6 +140,8 @@ pub enum Stage {
     /// torque or motor encoder has the wrong sign.
     Reversed,
 }
+
+state_words! { enum Stage { Touching, Crossing, Landing, Plain, Off, Reversed } }
 
 /// Output of the compensation in one control period. The numbers come first, so that they are copied in one block.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

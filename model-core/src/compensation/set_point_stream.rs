@@ -4,6 +4,7 @@ use super::set_point::ImpedancePoint;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// State of the stream.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,6 +19,8 @@ pub(super) struct SetPointStream<T: Real> {
     /// Travel of the point between the last two set-points [turns].
     travel: T,
 }
+
+state_words! { struct SetPointStream<T> { last, hold_time, interval, torque_rate, travel } }
 
 impl<T: Real> SetPointStream<T> {
     /// Updates the stream by the set-point of a period.

@@ -1,6 +1,7 @@
 //! Distribution of the slow tasks over three control periods, so that no tick bears all of them.
 
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Task of a control period, in addition to computing the torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,6 +13,8 @@ pub(super) enum SlowTask {
     /// Update of inertia, friction and load in the inverse of the backlash.
     EstimateDemand,
 }
+
+state_words! { enum SlowTask { Monitor, UpdateEdges, EstimateDemand } }
 
 impl SlowTask {
     /// Control periods between two turns of a task.

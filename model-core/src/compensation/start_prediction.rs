@@ -7,6 +7,7 @@ use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 
 /// Record of the last rest and start.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +24,8 @@ pub(super) struct StartPrediction<T: Real> {
     /// Position less set-point at which the link stands [rad].
     standstill_error: T,
 }
+
+state_words! { struct StartPrediction<T> { last_flank, continues, rests, standstill_time, standstill_error } }
 
 impl<T: Real> StartPrediction<T> {
     const THRESHOLDS: StartThresholds<T> = StartThresholds::TUNED;

@@ -16,6 +16,7 @@ use super::thresholds::EstimateBounds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::{Layout, Reader, StateWords, Writer};
 use crate::observer::{Estimates, TorqueResponse};
 
 /// Backlash compensation of one joint.
@@ -107,6 +108,52 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.plain = PlainControl::new();
         self.inverse.reset_edges();
         self.trust = T::ZERO;
+    }
+
+    /// Layout of the state as words; the tables are no part of it.
+    pub const STATE_LAYOUT: Layout = Layout::EMPTY
+        .with("load", LoadModel::<T>::LAYOUT)
+        .with("flank", FlankControl::<T>::LAYOUT)
+        .with("position", PositionLaw::<T>::LAYOUT)
+        .with("impedance", ImpedanceLaw::<T>::LAYOUT)
+        .with("plain", PlainControl::<T>::LAYOUT)
+        .with("inverse", BacklashInverse::<T>::LAYOUT)
+        .with("encoder_offset", T::LAYOUT)
+        .with("trust", T::LAYOUT)
+        .with("monitor", LoopMonitor::<T>::LAYOUT)
+        .with("task", SlowTask::LAYOUT);
+
+    /// Writes the state as `STATE_LAYOUT.words` words. A compensation of the same tables that reads them continues with
+    /// equal bits.
+    pub fn write_state(&self, to: &mut Writer) {
+        let Self { tables: _, load, flank, position, impedance, plain, inverse, encoder_offset, trust, monitor, task } =
+            self;
+        load.write(to);
+        flank.write(to);
+        position.write(to);
+        impedance.write(to);
+        plain.write(to);
+        inverse.write(to);
+        encoder_offset.write(to);
+        trust.write(to);
+        monitor.write(to);
+        task.write(to);
+    }
+
+    /// Replaces the state by one that was written by a compensation of the same tables.
+    pub fn read_state(&mut self, from: &mut Reader) {
+        let Self { tables: _, load, flank, position, impedance, plain, inverse, encoder_offset, trust, monitor, task } =
+            self;
+        load.read_in_place(from);
+        flank.read_in_place(from);
+        position.read_in_place(from);
+        impedance.read_in_place(from);
+        plain.read_in_place(from);
+        inverse.read_in_place(from);
+        encoder_offset.read_in_place(from);
+        trust.read_in_place(from);
+        monitor.read_in_place(from);
+        task.read_in_place(from);
     }
 
     /// Returns zero torque while the motor position is unknown, or the sign of torque or motor encoder is wrong.

@@ -7,6 +7,7 @@ use super::thresholds::TorqueSwingThresholds;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::deadband;
+use crate::numbers::state_words::state_words;
 
 /// Detector of a swing of the torque of one law.
 #[derive(Debug, Clone)]
@@ -15,6 +16,8 @@ pub(super) struct TorqueSwing<T: Real> {
     side: T,
     swings: bool,
 }
+
+state_words! { struct TorqueSwing<T> { side, swings } }
 
 impl<T: Real> TorqueSwing<T> {
     const THRESHOLDS: TorqueSwingThresholds<T> = TorqueSwingThresholds::TUNED;

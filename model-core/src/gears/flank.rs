@@ -3,6 +3,7 @@
 use parameters::ContactState;
 
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Flank of the teeth. `Option<Flank>` is `None` if no flank touches or the flank is unknown. The discriminants equal those
 /// of [`ContactState`], so that a conversion needs no branch.
@@ -13,6 +14,8 @@ pub enum Flank {
     /// Back flank: deflection, force and torque are negative.
     Back = 2,
 }
+
+state_words! { enum Flank { Drive, Back } }
 
 impl Flank {
     /// Returns the flank of a contact state; `None` if separated.

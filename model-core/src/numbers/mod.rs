@@ -1,5 +1,6 @@
 //! Arithmetic with equal bits on every host and board: scalar trait of the core, sine and cosine of phases, clamp and dead
-//! band, integer division, digests, random words, declaration of thresholds.
+//! band, integer division, digests, random words, state as words, declaration of
+//! thresholds.
 
 pub(crate) mod arithmetic;
 #[cfg(feature = "design")]
@@ -11,6 +12,7 @@ pub mod random;
 mod real;
 #[cfg(feature = "sensitivity")]
 pub mod sensitivity;
+pub mod state_words;
 mod thresholds;
 
 pub use real::Real;

@@ -4,6 +4,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use super::state_words::StateWords;
+
 /// Real number with bit-exact arithmetic on every host and target.
 pub trait Real:
     Copy
@@ -23,6 +25,7 @@ pub trait Real:
     + nalgebra::ClosedMulAssign
     + num_traits::Zero
     + num_traits::One
+    + StateWords
 {
     /// 0.
     const ZERO: Self;

@@ -1,6 +1,7 @@
 //! Published estimates of the observer, once per control period: value, variance and validity of each quantity.
 
 use crate::numbers::Real;
+use crate::numbers::state_words::{Layout, Reader, StateWords, Writer, state_words};
 use parameters::ContactState;
 
 /// Estimated quantity with its variance and validity flag.
@@ -14,6 +15,8 @@ pub struct Estimate<T: Real = f32> {
     pub valid: bool,
 }
 
+state_words! { struct Estimate<T> { value, variance, valid } }
+
 /// Position and speed of a shaft.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Shaft<T: Real> {
@@ -25,6 +28,8 @@ pub struct Shaft<T: Real> {
     pub speed: T,
 }
 
+state_words! { struct Shaft<T> { turns, fraction, speed } }
+
 /// Encoders on which the estimates are based.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
@@ -34,6 +39,33 @@ pub enum Source {
     MotorOnly(OutputFault),
     /// Neither encoder, with the fault of the motor encoder: no estimate is valid, every value is held.
     Nothing(MotorFault),
+}
+
+impl StateWords for Source {
+    const LAYOUT: Layout = Layout::EMPTY
+        .with("source", u32::LAYOUT)
+        .with("output_fault", OutputFault::LAYOUT)
+        .with("motor_fault", MotorFault::LAYOUT);
+
+    fn write(&self, to: &mut Writer) {
+        let (source, output_fault, motor_fault) = match *self {
+            Self::Both => (0, OutputFault::Absent, MotorFault::Silent),
+            Self::MotorOnly(fault) => (1, fault, MotorFault::Silent),
+            Self::Nothing(fault) => (2, OutputFault::Absent, fault),
+        };
+        to.word(source);
+        output_fault.write(to);
+        motor_fault.write(to);
+    }
+
+    fn read(from: &mut Reader) -> Self {
+        let (source, output_fault, motor_fault) = (from.word(), OutputFault::read(from), MotorFault::read(from));
+        match source {
+            0 => Self::Both,
+            1 => Self::MotorOnly(output_fault),
+            _ => Self::Nothing(motor_fault),
+        }
+    }
 }
 
 impl Default for Source {
@@ -68,6 +100,8 @@ pub enum MotorFault {
     Jumped,
 }
 
+state_words! { enum MotorFault { Silent, Late, Frozen, Jumped } }
+
 /// Reason for which the output encoder is excluded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputFault {
@@ -83,6 +117,8 @@ pub enum OutputFault {
     /// Counts imply an impossible deflection: jump, offset, slip or defect.
     OutOfRange,
 }
+
+state_words! { enum OutputFault { Absent, Unheard, Silent, Frozen, OutOfRange } }
 
 /// Result of the sign check of torque and motor encoder (O25).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -100,6 +136,8 @@ pub enum TorqueResponse {
     Reversed,
 }
 
+state_words! { enum TorqueResponse { Unknown, Tested, Right, Reversed } }
+
 /// Defects of the last samples. The observer continues with its previous state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Notices {
@@ -114,6 +152,8 @@ pub struct Notices {
     /// encoder. Without agreement the encoder has slipped, and the offset is estimated anew.
     pub motor_jumped: bool,
 }
+
+state_words! { struct Notices { torque_unknown, out_of_time, motor_implausible, motor_jumped } }
 
 /// Estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -179,4 +219,12 @@ pub struct Estimates<T: Real = f32> {
     pub motor: Shaft<T>,
     /// Link, without the estimated encoder errors. Without an output encoder the link is inferred from the motor.
     pub link: Shaft<T>,
+}
+
+state_words! {
+    struct Estimates<T> {
+        source, notices, torque_response, gap, gap_rate, flank_shift, flank_shift_slope, contact, reported_contact,
+        contact_valid, settled, mesh_torque, load_torque, half_backlash, half_backlash_usable, encoder_offset,
+        compliance, skew, torque_bias, motor_friction, cogging, link_inertia_ratio, motor_lead, motor, link,
+    }
 }

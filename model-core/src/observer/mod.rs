@@ -43,6 +43,7 @@ use sensors::{SensorReadings, Sensors};
 
 use crate::gears::sign;
 use crate::numbers::Real;
+use crate::numbers::state_words::{Layout, Reader, StateWords, Writer};
 
 pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
 pub use identification::regressors::{MAPPED, PLAIN};
@@ -262,6 +263,59 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             self.estimator.least_squares.reset_position_variances();
         }
         Ok(())
+    }
+
+    /// Layout of the state as words; the tables are no part of it.
+    pub const STATE_LAYOUT: Layout = Layout::EMPTY
+        .with("sensors", Sensors::LAYOUT)
+        .with("filters", Filters::<T>::LAYOUT)
+        .with("contact", Contact::LAYOUT)
+        .with("estimator", ParameterEstimator::<T, P>::LAYOUT)
+        .with("health", Health::<T>::LAYOUT)
+        .with("estimates", Estimates::<T>::LAYOUT);
+
+    /// Writes the state as `STATE_LAYOUT.words` words. An observer of the same tables that reads them continues with equal
+    /// bits.
+    ///
+    /// ```
+    /// use model_core::numbers::state_words::{Reader, Writer};
+    /// use model_core::observer::{MAPPED, Observer};
+    /// use model_core::{ControllerDesign, VirtualJointDesign};
+    ///
+    /// type Mapped<'tables> = Observer<'tables, f32, MAPPED>;
+    /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+    /// let tables = ControllerDesign::new(&q1, 10_000)?.observer;
+    /// let plant = VirtualJointDesign::<3>::new(&q1, 10_000)?;
+    /// let (mut joint, mut observer) = (plant.joint(), Mapped::new(&tables));
+    /// for _ in 0..500 {
+    ///     observer.step(&joint.samples());
+    ///     joint.advance(0.5, 0.0);
+    /// }
+    /// let (mut words, mut other) = ([0; Mapped::STATE_LAYOUT.words], Mapped::new(&tables));
+    /// observer.write_state(&mut Writer::new(&mut words));
+    /// other.read_state(&mut Reader::new(&words));
+    /// assert_eq!(other.step(&joint.samples()), observer.step(&joint.samples()));
+    /// # Ok::<(), model_core::gears::design::DesignError>(())
+    /// ```
+    pub fn write_state(&self, to: &mut Writer) {
+        let Self { tables: _, sensors, filters, contact, estimator, health, estimates } = self;
+        sensors.write(to);
+        filters.write(to);
+        contact.write(to);
+        estimator.write(to);
+        health.write(to);
+        estimates.write(to);
+    }
+
+    /// Replaces the state by one that was written by an observer of the same tables.
+    pub fn read_state(&mut self, from: &mut Reader) {
+        let Self { tables: _, sensors, filters, contact, estimator, health, estimates } = self;
+        sensors.read_in_place(from);
+        filters.read_in_place(from);
+        contact.read_in_place(from);
+        estimator.read_in_place(from);
+        health.read_in_place(from);
+        estimates.read_in_place(from);
     }
 
     /// Combines motor side and link side into deflection and force (O7, O9).

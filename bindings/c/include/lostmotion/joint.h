@@ -42,6 +42,8 @@
  *     joint_wiring_start 480
  *     joint_plant_save 448
  *     joint_plant_outputs, joint_compensation_start 416
+ *     joint_observer_save_state, joint_observer_load_state 300
+ *     joint_compensation_save_state, joint_compensation_load_state 300
  *     joint_tables_facts, joint_plant_shift 256
  *     joint_observer_estimates, joint_probe_start 208
  *     joint_plant_samples 160
@@ -117,8 +119,14 @@
 // Bytes of an observer's saved memory.
 #define JOINT_MEMORY_BYTES 544
 
+// 32-bit words of an observer's saved state.
+#define JOINT_OBSERVER_STATE_WORDS 621
+
 // 64-bit words of a compensation.
 #define JOINT_COMPENSATION_WORDS 65
+
+// 32-bit words of a compensation's saved state.
+#define JOINT_COMPENSATION_STATE_WORDS 143
 
 // 64-bit words of a width probe.
 #define JOINT_PROBE_WORDS 16
@@ -158,7 +166,7 @@ enum JointStatus
   JOINT_STATUS_DAMAGED_TABLES = 8,
   // The tables were made without this part.
   JOINT_STATUS_MISSING_TABLES = 9,
-  // Two objects were started from different tables.
+  // Two objects, or an object and a state, are of different tables.
   JOINT_STATUS_OTHER_TABLES = 10,
   // The data are no memory of an observer.
   JOINT_STATUS_NOT_A_MEMORY = 11,
@@ -176,6 +184,12 @@ enum JointStatus
   JOINT_STATUS_OTHER_HEADER = 17,
   // The observer has been stepped; a memory is loaded before the first step.
   JOINT_STATUS_ALREADY_STEPPED = 18,
+  // The data are no state of an object of this kind.
+  JOINT_STATUS_NOT_A_STATE = 19,
+  // The state has the layout of another version of the library.
+  JOINT_STATUS_WRONG_STATE_VERSION = 20,
+  // The digest of the state does not match: it is damaged.
+  JOINT_STATUS_DAMAGED_STATE = 21,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -712,6 +726,19 @@ JointStatus joint_observer_load(struct JointObserver *observer,
                                 const uint8_t *memory,
                                 size_t bytes);
 
+// Copies the whole state of an observer, without addresses. `words` is JOINT_OBSERVER_STATE_WORDS.
+JOINT_MUST_USE
+JointStatus joint_observer_save_state(const struct JointObserver *observer,
+                                      uint32_t *state,
+                                      size_t words);
+
+// Continues from a saved state of an observer of the same tables, in this process or another, before or after steps.
+// `words` is JOINT_OBSERVER_STATE_WORDS. Equal states continue with equal bits.
+JOINT_MUST_USE
+JointStatus joint_observer_load_state(struct JointObserver *observer,
+                                      const uint32_t *state,
+                                      size_t words);
+
 // Starts a compensation, as joint_compensation_start; `abi` is JOINT_ABI.
 JOINT_MUST_USE
 JointStatus joint_compensation_start_checked(struct JointCompensation *compensation,
@@ -735,6 +762,19 @@ JointStatus joint_compensation_yield(struct JointCompensation *compensation,
                                      const struct JointObserver *observer,
                                      const struct JointImpedance *impedance,
                                      struct JointTorque *torque);
+
+// Copies the whole state of a compensation, without addresses. `words` is JOINT_COMPENSATION_STATE_WORDS.
+JOINT_MUST_USE
+JointStatus joint_compensation_save_state(const struct JointCompensation *compensation,
+                                          uint32_t *state,
+                                          size_t words);
+
+// Continues from a saved state of a compensation of the same tables, in this process or another. `words` is
+// JOINT_COMPENSATION_STATE_WORDS. Equal states continue with equal bits.
+JOINT_MUST_USE
+JointStatus joint_compensation_load_state(struct JointCompensation *compensation,
+                                          const uint32_t *state,
+                                          size_t words);
 
 // Starts a width probe, as joint_probe_start; `abi` is JOINT_ABI.
 JOINT_MUST_USE

@@ -86,6 +86,13 @@ class Observer : public Object<JointObserver> {
     [[nodiscard]] Status load(std::span<const std::uint8_t> memory) noexcept {
         return joint_observer_load(get(), memory.data(), memory.size());
     }
+    /* The whole state, without addresses. */
+    [[nodiscard]] Status save_state(std::array<std::uint32_t, JOINT_OBSERVER_STATE_WORDS> &state) const noexcept {
+        return joint_observer_save_state(get(), state.data(), state.size());
+    }
+    [[nodiscard]] Status load_state(const std::array<std::uint32_t, JOINT_OBSERVER_STATE_WORDS> &state) noexcept {
+        return joint_observer_load_state(get(), state.data(), state.size());
+    }
 };
 
 class Compensation : public Object<JointCompensation> {
@@ -100,6 +107,13 @@ class Compensation : public Object<JointCompensation> {
     /* One control period of impedance control. */
     [[nodiscard]] Status yield(const Observer &observer, const Impedance &impedance, Torque &torque) noexcept {
         return joint_compensation_yield(get(), observer.get(), &impedance, &torque);
+    }
+    /* The whole state, without addresses. */
+    [[nodiscard]] Status save_state(std::array<std::uint32_t, JOINT_COMPENSATION_STATE_WORDS> &state) const noexcept {
+        return joint_compensation_save_state(get(), state.data(), state.size());
+    }
+    [[nodiscard]] Status load_state(const std::array<std::uint32_t, JOINT_COMPENSATION_STATE_WORDS> &state) noexcept {
+        return joint_compensation_load_state(get(), state.data(), state.size());
     }
 };
 

@@ -9,6 +9,7 @@
 use super::thresholds::CONTACT;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Contact by force alone.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,6 +19,8 @@ pub struct ForceContact {
     candidate: Option<Flank>,
     candidate_periods: u8,
 }
+
+state_words! { struct ForceContact { flank, candidate, candidate_periods } }
 
 impl ForceContact {
     /// Updates the contact. A contact begins above two `deviation`s, the standard deviation of the force [N], and is

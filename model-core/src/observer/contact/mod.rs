@@ -12,6 +12,7 @@ use gap_position::GapPosition;
 
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Reported contact and its state from period to period.
 #[derive(Debug, Clone, Copy, Default)]
@@ -23,6 +24,8 @@ pub struct Contact {
     /// True once the teeth have settled after crossing the gap.
     settled: bool,
 }
+
+state_words! { struct Contact { by_force, reported, settled } }
 
 impl Contact {
     /// Updates the reported contact by force and deflection and returns the mesh force of both sensors [N].

@@ -19,6 +19,7 @@
 use super::delayed::Delayed;
 use super::thresholds::MotorSideThresholds;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::{CurrentTable, DriveTable, MOST_DELAY};
 
 /// State of the motor side.
@@ -36,6 +37,8 @@ pub struct DriveSide<T: Real> {
     /// Commands within the delay, newest first.
     commands: [T; MOST_DELAY],
 }
+
+state_words! { struct DriveSide<T> { angle_residual, speed, disturbance_torque, air_gap, peak_torque, commands } }
 
 impl<T: Real> DriveSide<T> {
     const LIMITS: MotorSideThresholds<T> = MotorSideThresholds::TUNED;

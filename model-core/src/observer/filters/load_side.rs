@@ -12,6 +12,7 @@
 
 use super::delayed::Delayed;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::LoadTable;
 
 /// State of the load side.
@@ -24,6 +25,8 @@ pub struct LoadSide<T: Real> {
     /// Load torque, positive if it brakes [N m].
     pub torque: T,
 }
+
+state_words! { struct LoadSide<T> { angle_residual, speed, torque } }
 
 impl<T: Real> LoadSide<T> {
     /// Predicts the state over one period under a mesh torque; `reference_angle` is the travel of the reference [rad].

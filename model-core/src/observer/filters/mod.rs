@@ -15,6 +15,7 @@ use super::sensors::counts::CountChange;
 use super::sensors::latency::SampleAge;
 use super::sensors::{SensorReadings, seconds};
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::{LoadTable, ObserverTables};
 
 /// Filters of both sides and the torque that couples them.
@@ -25,6 +26,8 @@ pub struct Filters<T: Real> {
     /// Mesh torque acting on the load side, estimated by the motor side [N m].
     pub mesh_torque: T,
 }
+
+state_words! { struct Filters<T> { drive, load, mesh_torque } }
 
 /// Correction of the link's state without its encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -18,6 +18,7 @@ use super::thresholds::UnseenLinkThresholds;
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::deadband;
+use crate::numbers::state_words::state_words;
 use crate::observer::contact::force_contact::with_hysteresis;
 use crate::observer::filters::LoadCorrection;
 use crate::observer::identification::ParameterEstimator;
@@ -39,6 +40,12 @@ pub struct LinkWithoutEncoder<T: Real> {
     force: T,
     /// Sum of landing speeds, decaying as bounces do [m/s].
     landing_speed: T,
+}
+
+state_words! {
+    struct LinkWithoutEncoder<T> {
+        certain, likely, open_periods, position_known, force, landing_speed,
+    }
 }
 
 impl<T: Real> LinkWithoutEncoder<T> {

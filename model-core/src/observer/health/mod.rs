@@ -24,6 +24,7 @@ use super::identification::{IntervalResult, ParameterEstimator};
 use super::sensors::{SensorReadings, Sensors};
 use crate::numbers::Real;
 use crate::numbers::integers::saturating_real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::ObserverTables;
 
 pub use output_faults::{LastMotion, ReadingStatus};
@@ -43,6 +44,12 @@ pub struct Health<T: Real> {
     /// Last and last but one stored load torque, from before a failing encoder could corrupt the estimate [N m].
     load_torques: [T; 2],
     intervals_since_store: u16,
+}
+
+state_words! {
+    struct Health<T> {
+        source, motor, output, output_recovery, response, unseen_link, load_torques, intervals_since_store,
+    }
 }
 
 /// Verdict on the encoders by the deflection.

@@ -18,6 +18,7 @@ use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts
 use super::thresholds::{MOTOR_FAULT, PARTS_PER_COUNT, PLAUSIBILITY};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::deadband;
+use crate::numbers::state_words::state_words;
 use crate::observer::estimates::MotorFault;
 use crate::observer::filters::drive_side::DriveSide;
 use crate::observer::identification::ParameterEstimator;
@@ -43,6 +44,13 @@ pub struct MotorFaultDetector<T: Real> {
     /// Periods of plausible readings since the exclusion, and whether the counts have moved.
     plausible_for: u16,
     has_moved: bool,
+}
+
+state_words! {
+    struct MotorFaultDetector<T> {
+        plausibility, fault, standstill_periods, free_speed, free_travel, standstill_deflection, standstill_force,
+        plausible_for, has_moved,
+    }
 }
 
 /// Result of screening a motor reading.

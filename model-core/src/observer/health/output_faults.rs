@@ -25,6 +25,7 @@
 use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
 use super::thresholds::OUTPUT_FAULT;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::estimates::OutputFault;
 use crate::observer::identification::ParameterEstimator;
 use crate::observer::identification::mesh_measurement::MeshMeasurement;
@@ -47,6 +48,13 @@ pub struct OutputFaultDetector<T: Real> {
     standstill_deflection: T,
     /// True if the deflection was unknown in the last period.
     deflection_unknown: bool,
+}
+
+state_words! {
+    struct OutputFaultDetector<T> {
+        plausibility, silent_periods, standstill_periods, out_of_range_for, deflection, has_jumped,
+        standstill_deflection, deflection_unknown,
+    }
 }
 
 /// An obstacle stops a link; nothing throws a link.

@@ -18,6 +18,7 @@
 
 use super::thresholds::{PART_BITS, PARTS_PER_COUNT, PLAUSIBILITY};
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::StopTable;
 
 /// Base-2 logarithm of the readings over which the noise is averaged.
@@ -65,6 +66,8 @@ pub struct Plausibility {
     /// Equal readings in a row.
     standstill_readings: u8,
 }
+
+state_words! { struct Plausibility { rate, noise, jump_distance, readings_since_jump, standstill_readings } }
 
 impl Default for Plausibility {
     fn default() -> Self {

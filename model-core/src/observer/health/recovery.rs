@@ -3,6 +3,7 @@
 use super::thresholds::OUTPUT_FAULT;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::SupervisorTable;
 
 /// Kind of return of an encoder.
@@ -39,6 +40,8 @@ pub struct OutputRecovery<T: Real> {
     /// Position of the output when it last moved [2^-32 turns].
     position: u32,
 }
+
+state_words! { struct OutputRecovery<T> { agreeing_intervals, steady_intervals, steady_offsets, position } }
 
 impl<T: Real> OutputRecovery<T> {
     /// Starts anew after an exclusion.

@@ -18,6 +18,7 @@
 
 use super::thresholds::TorqueResponseThresholds;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::estimates::TorqueResponse;
 use crate::observer::tables::ResponseTable;
 
@@ -51,6 +52,12 @@ pub struct TorqueResponseCheck<T: Real> {
     pairs: [[T; 2]; APART],
     /// Consecutive blocks without a tooth impact, saturated.
     undisturbed_blocks: u8,
+}
+
+state_words! {
+    struct TorqueResponseCheck<T> {
+        response, votes, against_torque, test_block, periods, torque, turned, last_block, pairs, undisturbed_blocks,
+    }
 }
 
 impl<T: Real> TorqueResponseCheck<T> {

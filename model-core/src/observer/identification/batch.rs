@@ -12,6 +12,7 @@ use super::regressors::{ContactSample, Regressors};
 use super::thresholds::EstimatorThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::LearnerTable;
 
 /// Contribution of an interval.
@@ -43,6 +44,12 @@ pub struct Batch<T: Real, const P: usize> {
     forces: [ForceStatistics<T>; 2],
 }
 
+state_words! {
+    struct Batch<T, P> {
+        intervals, contact_intervals, batches, contact, open_gap, deflection, forces,
+    }
+}
+
 /// Forces of the last batches on one flank.
 #[derive(Debug, Clone, Copy)]
 struct ForceStatistics<T: Real> {
@@ -51,6 +58,8 @@ struct ForceStatistics<T: Real> {
     /// Variance [N^2].
     variance: T,
 }
+
+state_words! { struct ForceStatistics<T> { mean, variance } }
 
 impl<T: Real> ForceStatistics<T> {
     const NONE: Self = Self { mean: T::ZERO, variance: T::ZERO };

@@ -10,6 +10,7 @@
 use super::thresholds::OUTLIER;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::ContactTable;
 
 /// Apparent force of the motor side without mesh force: bias + friction * direction [N].
@@ -20,6 +21,8 @@ pub struct TorqueBias<T: Real> {
     /// Variances of bias and friction, then their covariance [N^2].
     pub variance: [T; 3],
 }
+
+state_words! { struct TorqueBias<T> { bias, friction, variance } }
 
 impl<T: Real> TorqueBias<T> {
     pub fn new(table: &ContactTable<T>) -> Self {

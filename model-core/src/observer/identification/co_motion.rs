@@ -5,6 +5,7 @@
 use super::thresholds::CoMotionThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Rest in which motor and link move together.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +20,8 @@ pub struct CoMotion<T: Real> {
     /// Travel of the link since then in excess of a motion at that speed [m].
     link_departure: T,
 }
+
+state_words! { struct CoMotion<T> { span, drift, initial_travel, link_departure } }
 
 /// Relation of a dwell to the last one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

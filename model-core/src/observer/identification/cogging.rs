@@ -16,6 +16,7 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::CoggingTable;
 
 /// Estimate of the cogging.
@@ -35,6 +36,8 @@ pub struct Cogging<T: Real> {
     flank: Option<Flank>,
     carrying_intervals: u32,
 }
+
+state_words! { struct Cogging<T> { torque, variance, noise, slow, speed, flank, carrying_intervals } }
 
 impl<T: Real> Cogging<T> {
     pub fn new(table: &CoggingTable<T>) -> Self {

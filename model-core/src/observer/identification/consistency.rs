@@ -3,6 +3,7 @@
 
 use super::thresholds::CONSISTENCY;
 use crate::gears::Flank;
+use crate::numbers::state_words::state_words;
 
 /// Evidence against the estimated parameters.
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,6 +18,12 @@ pub struct Consistency {
     variation_errors: u8,
     /// Accepted dwells since the last of these errors.
     accepted_since_error: u8,
+}
+
+state_words! {
+    struct Consistency {
+        gap_force_intervals, outliers, accepted, variation_errors, accepted_since_error,
+    }
 }
 
 /// Deviation of a dwell, or of a force between the flanks, from the estimated parameters.

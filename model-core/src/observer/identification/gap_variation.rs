@@ -12,6 +12,7 @@
 use super::thresholds::GapVariationThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::CountTable;
 
 /// Place of the last dwell on each flank, and the observed variation of the half-gap.
@@ -26,6 +27,8 @@ pub struct GapVariation<T: Real> {
     /// Sums of (1): squared relative variations [-], and squared angles [rad^2].
     sums: [T; 2],
 }
+
+state_words! { struct GapVariation<T> { position, dwell_positions, last_flank, sums } }
 
 impl<T: Real> GapVariation<T> {
     const LIMITS: GapVariationThresholds<T> = GapVariationThresholds::TUNED;

@@ -15,6 +15,7 @@
 use super::thresholds::OUTLIER;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 use crate::observer::filters::load_side::LoadSide;
 use crate::observer::tables::InertiaTable;
 
@@ -35,6 +36,12 @@ pub struct LinkInertia<T: Real> {
     external_variance: T,
     /// Intervals of motion in one direction, with constant dry friction; negative for backward motion.
     one_way_intervals: i32,
+}
+
+state_words! {
+    struct LinkInertia<T> {
+        sum, stationary_response, slow, mobility, variance, external_variance, one_way_intervals,
+    }
 }
 
 impl<T: Real> LinkInertia<T> {

@@ -5,6 +5,7 @@ use super::thresholds::FLANK;
 use super::travel::Travel;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::{Layout, Reader, StateWords, Writer, state_words};
 
 /// Sums over the periods of an interval, and values that outlast the interval.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +33,13 @@ pub struct Interval<T: Real> {
     pub open_intervals: u8,
 }
 
+state_words! {
+    struct Interval<T> {
+        periods, sums, task, direction, nearer_flank, updated_on, settled_flank, force, loaded_flank, steady_force,
+        dwell_force, open_intervals,
+    }
+}
+
 /// Averaged quantities.
 #[derive(Debug, Clone, Copy)]
 pub struct IntervalMean<T: Real> {
@@ -40,6 +48,8 @@ pub struct IntervalMean<T: Real> {
     pub force: T,
     pub direction: T,
 }
+
+state_words! { struct IntervalMean<T> { raw_deflection, motor_force, force, direction } }
 
 impl<T: Real> IntervalMean<T> {
     const NONE: Self = Self { raw_deflection: T::ZERO, motor_force: T::ZERO, force: T::ZERO, direction: T::ZERO };
@@ -111,6 +121,37 @@ pub enum Task {
     Uncertainty,
     /// Updates the values that hold until the next interval.
     UpdateLimits,
+}
+
+impl StateWords for Task {
+    const LAYOUT: Layout = Layout::EMPTY.with("task", u32::LAYOUT).with("dwell_follows", bool::LAYOUT);
+
+    fn write(&self, to: &mut Writer) {
+        let (task, dwell_follows) = match *self {
+            Self::Done => (0, false),
+            Self::Inertia(dwell_follows) => (1, dwell_follows),
+            Self::Flank => (2, false),
+            Self::CheckDwell => (3, false),
+            Self::UpdateParameters => (4, false),
+            Self::Uncertainty => (5, false),
+            Self::UpdateLimits => (6, false),
+        };
+        to.word(task);
+        dwell_follows.write(to);
+    }
+
+    fn read(from: &mut Reader) -> Self {
+        let (task, dwell_follows) = (from.word(), bool::read(from));
+        match task {
+            1 => Self::Inertia(dwell_follows),
+            2 => Self::Flank,
+            3 => Self::CheckDwell,
+            4 => Self::UpdateParameters,
+            5 => Self::Uncertainty,
+            6 => Self::UpdateLimits,
+            _ => Self::Done,
+        }
+    }
 }
 
 /// Returns true once the teeth have been at rest long enough.

@@ -9,6 +9,7 @@ use super::least_squares::{Innovation, LeastSquares};
 use super::regressors::{HALF_GAP, Regressors, SKEW};
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::LearnerTable;
 
 /// Last dwell of the teeth.
@@ -23,6 +24,8 @@ pub struct LastDwell<T: Real, const P: usize> {
     /// True until the dwell is interrupted.
     is_continuous: bool,
 }
+
+state_words! { struct LastDwell<T, P> { regressors, flank, deflection, co_motion, is_stored, is_continuous } }
 
 impl<T: Real, const P: usize> LastDwell<T, P> {
     /// A constant: the compiler writes it in place instead of copying from the stack.

@@ -58,6 +58,7 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::integers::saturating_real;
 use crate::numbers::phase::sine_cosine;
+use crate::numbers::state_words::state_words;
 use crate::observer::contact::gap_position::GapPosition;
 use crate::observer::filters::Filters;
 use crate::observer::filters::load_side::LoadSide;
@@ -85,6 +86,13 @@ pub struct ParameterEstimator<T: Real, const P: usize> {
     trusted: Option<TrustedParameters<T, P>>,
     /// Innovation that updates the parameters in the next period.
     pending_innovation: Option<Innovation<T, P>>,
+}
+
+state_words! {
+    struct ParameterEstimator<T, P> {
+        least_squares, bias, inertia, cogging, errors, uncertainty, interval, travel, batch, last_dwell, consistency,
+        gap_variation, probation, trusted, pending_innovation,
+    }
 }
 
 /// Result of a learning interval, before it updates an estimate.

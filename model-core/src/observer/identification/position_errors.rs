@@ -5,6 +5,7 @@ use super::least_squares::LeastSquares;
 use super::regressors::{MAP_PARAMETERS, MAPPED, PLAIN, Regressors};
 use super::thresholds::EstimatorThresholds;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Position-dependent parts of the deflection.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +23,8 @@ pub struct PositionErrors<T: Real, const P: usize> {
     /// Turn of motor and mesh phase since the last exact computation [rad].
     turned: T,
 }
+
+state_words! { struct PositionErrors<T, P> { open_gap, mid_mesh, mesh, errors, slopes, turned } }
 
 impl<T: Real, const P: usize> PositionErrors<T, P> {
     const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;

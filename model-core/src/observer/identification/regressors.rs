@@ -11,6 +11,7 @@
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::phase::sine_cosine;
+use crate::numbers::state_words::state_words;
 
 /// Number of parameters without error maps: half-gap, offset, compliance, skew, and sine and cosine of the transmission
 /// error.
@@ -64,6 +65,8 @@ pub struct ContactSample<T: Real> {
     /// Sine and cosine of the mesh phase.
     pub mesh: [T; 2],
 }
+
+state_words! { struct ContactSample<T> { flank, force, mesh } }
 
 impl<T: Real> ContactSample<T> {
     /// Open gap.

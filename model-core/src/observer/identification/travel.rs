@@ -3,6 +3,7 @@
 
 use super::thresholds::EstimatorThresholds;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::ContactTable;
 
 /// Learning intervals over which the speed is measured.
@@ -24,6 +25,12 @@ pub struct TravelDetector<T: Real> {
     rest_intervals: u8,
     /// Change of the deflection over the window below which no motion is detected [m].
     limit: T,
+}
+
+state_words! {
+    struct TravelDetector<T> {
+        deflections, forces, directions, newest, filled, rest_intervals, limit,
+    }
 }
 
 /// Travel of the teeth in an interval.

@@ -4,6 +4,7 @@
 use super::least_squares::LeastSquares;
 use super::regressors::{HALF_GAP, OFFSET};
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 
 /// Parameters that determine the position of an unobserved link.
 const POSITION_PARAMETERS: [usize; 2] = [HALF_GAP, OFFSET];
@@ -16,6 +17,8 @@ pub struct TrustedParameters<T: Real, const P: usize> {
     /// Variances of half-gap and offset over their initial variances [-].
     variances: [T; 2],
 }
+
+state_words! { struct TrustedParameters<T, P> { values, variances } }
 
 impl<T: Real, const P: usize> TrustedParameters<T, P> {
     /// Copies the present parameters.

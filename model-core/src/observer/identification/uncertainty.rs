@@ -16,6 +16,7 @@ use super::regressors::{self, COMPLIANCE, ContactSample, HALF_GAP, OFFSET, Regre
 use super::thresholds::UncertaintyThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::ObserverTables;
 
 /// Parts of an update.
@@ -78,6 +79,15 @@ pub struct Uncertainty<T: Real> {
     half_gap_error: T,
     /// Part that is updated next.
     next_part: u8,
+}
+
+state_words! {
+    struct Uncertainty<T> {
+        force_deviation, mean_force_deviation, steady_force_deviation, combined_deviation, deflection_variance,
+        edge_deviation, wind_up_variance, variances, blur, near, position_weight, half_gap_is_known,
+        half_gap_is_usable, stiffness, mesh_share, compliance_uncertainty, guessed_half_gap, reach, gap_variance,
+        widest_variance, flanks_swap, settled, dwell_deviation, half_gap_error, next_part,
+    }
 }
 
 impl<T: Real> Uncertainty<T> {

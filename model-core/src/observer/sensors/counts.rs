@@ -11,6 +11,7 @@
 use super::thresholds::COUNTS;
 use crate::numbers::Real;
 use crate::numbers::integers::{floor_div, floor_mod, half, quotient};
+use crate::numbers::state_words::state_words;
 use crate::observer::samples::Reading;
 use crate::observer::tables::{CountTable, EncoderTable};
 
@@ -23,6 +24,8 @@ pub struct Counter {
     rejected: u8,
     began: bool,
 }
+
+state_words! { struct Counter { raw, place, turns, rejected, began } }
 
 /// Result of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +148,12 @@ pub struct Counts {
     suspicion: Option<Suspicion>,
 }
 
+state_words! {
+    struct Counts {
+        motor, output, difference, start, has_reference, implied, output_time, motor_time, suspicion,
+    }
+}
+
 /// Memory of an excluded motor encoder.
 #[derive(Debug, Clone, Copy)]
 struct Suspicion {
@@ -153,6 +162,8 @@ struct Suspicion {
     /// Travel of the motor counts since then, as far as raw counts show [units of the difference].
     travel: i64,
 }
+
+state_words! { struct Suspicion { difference, travel } }
 
 /// Result of the readings of one period.
 #[derive(Debug, Clone, Copy)]

@@ -2,6 +2,7 @@
 //! lost one.
 
 use super::thresholds::LATENCY;
+use crate::numbers::state_words::state_words;
 
 /// Resolution of ages [parts of a control period].
 const AGE_PARTS: u32 = 16;
@@ -31,6 +32,8 @@ pub struct Latency {
     /// recovery plus `LATENCY.tolerated_late_periods`.
     lateness: u8,
 }
+
+state_words! { struct Latency { age, lateness } }
 
 impl Latency {
     /// Classifies a reading by its age, `None` if too old, and the control period; both in ticks.

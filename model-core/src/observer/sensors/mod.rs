@@ -10,6 +10,7 @@ use counts::{CountChange, Counts};
 use latency::{Latency, SampleAge};
 
 use crate::numbers::Real;
+use crate::numbers::state_words::state_words;
 use crate::observer::estimates::Notices;
 use crate::observer::samples::{Reading, Samples};
 use crate::observer::tables::{ClockTable, ObserverTables};
@@ -24,6 +25,8 @@ pub struct Sensors {
     /// Periods for which a rejected torque sample may still affect the filters.
     torque_unknown_for: u16,
 }
+
+state_words! { struct Sensors { counts, latency, time, torque_unknown_for } }
 
 /// Evaluated samples of one period.
 #[derive(Debug, Clone, Copy)]

@@ -18,6 +18,7 @@ use core::array;
 use super::regressors::{COMPLIANCE, HALF_GAP, MAP_PARAMETERS, OFFSET, PLAIN, Regressors, SKEW, TRANSMISSION_ERROR};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
+use crate::numbers::state_words::state_words;
 use crate::observer::tables::{LearnerTable, ObserverTables};
 
 /// Parameters with their covariance.
@@ -29,6 +30,8 @@ pub struct LeastSquares<T: Real, const P: usize> {
     pub values: [T; P],
 }
 
+state_words! { struct LeastSquares<T, P> { factors, values } }
+
 /// Innovation of a deflection, in standard deviations of one deflection's noise.
 #[derive(Debug, Clone, Copy)]
 pub struct Innovation<T: Real, const P: usize> {
@@ -39,6 +42,8 @@ pub struct Innovation<T: Real, const P: usize> {
     /// Variance of `value`.
     pub variance: T,
 }
+
+state_words! { struct Innovation<T, P> { projected, value, variance } }
 
 impl<T: Real, const P: usize> Innovation<T, P> {
     /// Returns true if the normalised innovation is within `deviations` standard deviations.

@@ -58,6 +58,7 @@ extern crate std;
 
 pub mod compensation;
 pub mod controller;
+mod estimates;
 pub mod gears;
 pub mod numbers;
 pub mod observer;

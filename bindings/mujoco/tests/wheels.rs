@@ -30,7 +30,7 @@ const STEPS: [f64; 3] = [0.5e-3, 1e-3, 2e-3];
 const RATE: u32 = 10_000;
 /// Length of a run [s].
 const LENGTH: f64 = 1.2;
-/// Least error with a PID controller over that with observer and compensation; measured 9.6 to 57.
+/// Least error with a PID controller over that with observer and compensation; measured 9.1 to 49.
 const LEAST_GAIN: f64 = 5.0;
 /// Largest error over the range of the reference.
 const LIMIT: f64 = 0.005;

@@ -23,7 +23,6 @@ pub(super) struct CrossingPath<T: Real> {
     crossing: CrossingTiming<T>,
     inverse_ramp: T,
 }
-
 state_words! { struct CrossingPath<T> { start, end, steady, crossing, inverse_ramp } }
 
 impl<T: Real> CrossingPath<T> {

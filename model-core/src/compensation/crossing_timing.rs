@@ -21,7 +21,6 @@ pub(crate) struct CrossingTiming<T: Real> {
     /// Duration of each of the two ramps, to and from the steady speed [s]; at most half of `duration`.
     pub ramp: T,
 }
-
 state_words! { struct CrossingTiming<T> { duration, ramp } }
 
 impl<T: Real> CrossingTiming<T> {

@@ -42,7 +42,6 @@ pub(super) struct DemandEstimator<T: Real> {
     /// Set-point torque of the last planned demand, until it is used for estimation.
     planned: Option<PlannedTorque<T>>,
 }
-
 state_words! {
     struct DemandEstimator<T> {
         inertia, load, peak_square, transmitted, torque, friction_torque, planned,
@@ -57,7 +56,6 @@ struct PlannedTorque<T: Real> {
     /// Share and sign of dry friction at the planned speed, -1 to 1.
     direction: T,
 }
-
 state_words! { struct PlannedTorque<T> { inertia_torques, direction } }
 
 impl<T: Real> DemandEstimator<T> {

@@ -22,7 +22,6 @@ pub(super) struct Easing<T: Real> {
     /// True if the link gave way: the load is more than friction, and is held until the joint has moved.
     gave_way: bool,
 }
-
 state_words! { struct Easing<T> { load, steady_time, start_error, gave_way } }
 
 impl<T: Real> Easing<T> {

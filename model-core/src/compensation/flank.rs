@@ -60,7 +60,6 @@ pub(super) struct FlankControl<T: Real> {
     /// True if the motor rested in the middle of the gap in the previous period.
     centred: bool,
 }
-
 state_words! {
     struct FlankControl<T> {
         flank, stage, path, origin, elapsed, landing_opening, rise, impulse_deficit, hysteresis, requested, unneeded,

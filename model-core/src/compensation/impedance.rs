@@ -29,7 +29,6 @@ pub(super) struct ImpedanceLaw<T: Real> {
     /// Prediction of the next start of the set-point.
     start: StartPrediction<T>,
 }
-
 state_words! { struct ImpedanceLaw<T> { stream, start } }
 
 impl<T: Real> ImpedanceLaw<T> {

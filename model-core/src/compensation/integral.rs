@@ -19,7 +19,6 @@ pub(super) struct Integral<T: Real> {
     torque: T,
     swing: TorqueSwing<T>,
 }
-
 state_words! { struct Integral<T> { torque, swing } }
 
 impl<T: Real> Integral<T> {

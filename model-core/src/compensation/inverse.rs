@@ -60,7 +60,6 @@ pub(super) struct BacklashInverse<T: Real> {
     has_settled: bool,
     demand: DemandEstimator<T>,
 }
-
 state_words! {
     struct BacklashInverse<T> {
         integral, shift, share, edges, anchor, target_shift, last_torque, pressed, has_settled, demand,

@@ -41,7 +41,6 @@ pub(super) struct LoadModel<T: Real> {
     /// Detector of a swinging payload.
     swing: PayloadSwing<T>,
 }
-
 state_words! {
     struct LoadModel<T> {
         filter, speed_error, speed, rate, free_load, peak_load, last_direction, creep, saturation, swing,
@@ -55,7 +54,6 @@ struct Creep<T: Real> {
     /// Growth of the gravity torque's variance while the link creeps.
     variance: T,
 }
-
 state_words! { struct Creep<T> { gravity_torque, variance } }
 
 impl<T: Real> LoadModel<T> {

@@ -23,7 +23,6 @@ pub(super) struct LoadFrictionFilter<T: Real> {
     /// Variances of gravity torque and friction and their covariance, in the unit of the measurement's variance.
     variance: [T; 3],
 }
-
 state_words! { struct LoadFrictionFilter<T> { gravity_torque, friction, variance } }
 
 impl<T: Real> LoadFrictionFilter<T> {

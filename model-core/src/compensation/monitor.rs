@@ -57,7 +57,6 @@ pub(super) struct LoopMonitor<T: Real> {
     /// Time for which the compensation has acted since the last trip, saturating [s].
     acting_time: T,
 }
-
 state_words! {
     struct LoopMonitor<T> {
         flank, change_weight, unexplained, load, mean_square, granted_square, last_error, judged_time, worst_error,

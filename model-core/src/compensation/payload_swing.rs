@@ -28,7 +28,6 @@ pub(super) struct PayloadSwing<T: Real> {
     /// Remaining time for which the load counts as swinging [s].
     remaining_time: T,
 }
-
 state_words! { struct PayloadSwing<T> { means, side, time_since_change, changes, remaining_time } }
 
 impl<T: Real> PayloadSwing<T> {

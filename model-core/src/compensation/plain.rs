@@ -29,7 +29,6 @@ pub(super) struct PlainControl<T: Real> {
     /// `None` in impedance mode, while the link is seen, and while the half-gap is unknown.
     expected_flank: Option<T>,
 }
-
 state_words! { struct PlainControl<T> { integral, motor_lead, expected_flank } }
 
 impl<T: Real> PlainControl<T> {

@@ -55,7 +55,6 @@ pub(super) struct PositionLaw<T: Real> {
     /// [rad/s^2].
     peak_acceleration: T,
 }
-
 state_words! {
     struct PositionLaw<T> {
         last_acceleration, deadband, requested_flank, time_since_request, measured_demand, start, easing,

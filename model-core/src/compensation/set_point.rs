@@ -13,7 +13,6 @@ pub struct Position<T: Real = f32> {
     /// Remaining part of a turn [turns].
     pub fraction: T,
 }
-
 state_words! { struct Position<T> { turns, fraction } }
 
 impl<T: Real> Position<T> {
@@ -73,7 +72,6 @@ pub struct ImpedancePoint<T: Real = f32> {
     /// Damping [N m s/rad].
     pub damping: T,
 }
-
 state_words! { struct ImpedancePoint<T> { position, speed, torque, stiffness, damping } }
 
 /// Command of one control period.
@@ -140,7 +138,6 @@ pub enum Stage {
     /// torque or motor encoder has the wrong sign.
     Reversed,
 }
-
 state_words! { enum Stage { Touching, Crossing, Landing, Plain, Off, Reversed } }
 
 /// Output of the compensation in one control period. The numbers come first, so that they are copied in one block.

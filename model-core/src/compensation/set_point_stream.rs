@@ -19,7 +19,6 @@ pub(super) struct SetPointStream<T: Real> {
     /// Travel of the point between the last two set-points [turns].
     travel: T,
 }
-
 state_words! { struct SetPointStream<T> { last, hold_time, interval, torque_rate, travel } }
 
 impl<T: Real> SetPointStream<T> {

@@ -13,7 +13,6 @@ pub(super) enum SlowTask {
     /// Update of inertia, friction and load in the inverse of the backlash.
     EstimateDemand,
 }
-
 state_words! { enum SlowTask { Monitor, UpdateEdges, EstimateDemand } }
 
 impl SlowTask {

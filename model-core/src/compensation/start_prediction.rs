@@ -24,7 +24,6 @@ pub(super) struct StartPrediction<T: Real> {
     /// Position less set-point at which the link stands [rad].
     standstill_error: T,
 }
-
 state_words! { struct StartPrediction<T> { last_flank, continues, rests, standstill_time, standstill_error } }
 
 impl<T: Real> StartPrediction<T> {

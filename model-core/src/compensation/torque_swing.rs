@@ -16,7 +16,6 @@ pub(super) struct TorqueSwing<T: Real> {
     side: T,
     swings: bool,
 }
-
 state_words! { struct TorqueSwing<T> { side, swings } }
 
 impl<T: Real> TorqueSwing<T> {

@@ -14,7 +14,6 @@ pub enum Flank {
     /// Back flank: deflection, force and torque are negative.
     Back = 2,
 }
-
 state_words! { enum Flank { Drive, Back } }
 
 impl Flank {

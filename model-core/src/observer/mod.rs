@@ -16,7 +16,6 @@
 mod contact;
 #[cfg(feature = "design")]
 pub mod design;
-mod estimates;
 mod filters;
 mod health;
 mod identification;
@@ -45,7 +44,7 @@ use crate::gears::sign;
 use crate::numbers::Real;
 use crate::numbers::state_words::{Layout, Reader, StateWords, Writer};
 
-pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
+pub use crate::estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
 pub use identification::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use samples::{Reading, Samples};

@@ -2,7 +2,6 @@
 //! validity flags.
 
 use super::contact::Contact;
-use super::estimates::{Estimate, Estimates, MotorFault, Shaft, Source};
 use super::filters::Filters;
 use super::health::Health;
 use super::identification::ParameterEstimator;
@@ -13,6 +12,7 @@ use super::sensors::Sensors;
 use super::sensors::counts::Counter;
 use super::tables::{EncoderTable, ObserverTables};
 use super::thresholds::ValidityThresholds;
+use crate::estimates::{Estimate, Estimates, MotorFault, Shaft, Source};
 use crate::gears::contact_state;
 use crate::numbers::Real;
 

@@ -41,12 +41,10 @@
  *     joint_wiring_step, joint_plant_load 576
  *     joint_wiring_start 480
  *     joint_plant_save 448
- *     joint_plant_outputs, joint_compensation_start 416
- *     joint_observer_save_state, joint_observer_load_state 300
- *     joint_compensation_save_state, joint_compensation_load_state 300
- *     joint_tables_facts, joint_plant_shift 256
- *     joint_observer_estimates, joint_probe_start 208
- *     joint_plant_samples 160
+ *     joint_plant_outputs, joint_compensation_start, joint_observer_load_state 416
+ *     joint_tables_facts, joint_plant_shift, joint_observer_save_state 256
+ *     joint_observer_estimates, joint_probe_start, joint_compensation_load_state 208
+ *     joint_plant_samples, joint_compensation_save_state 160
  *     joint_plant_digest 96
  *     joint_probe_step 40
  *     joint_plant_speeds 24

@@ -19,7 +19,6 @@ pub struct ForceContact {
     candidate: Option<Flank>,
     candidate_periods: u8,
 }
-
 state_words! { struct ForceContact { flank, candidate, candidate_periods } }
 
 impl ForceContact {

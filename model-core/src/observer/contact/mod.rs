@@ -24,7 +24,6 @@ pub struct Contact {
     /// True once the teeth have settled after crossing the gap.
     settled: bool,
 }
-
 state_words! { struct Contact { by_force, reported, settled } }
 
 impl Contact {

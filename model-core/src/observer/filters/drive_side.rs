@@ -37,7 +37,6 @@ pub struct DriveSide<T: Real> {
     /// Commands within the delay, newest first.
     commands: [T; MOST_DELAY],
 }
-
 state_words! { struct DriveSide<T> { angle_residual, speed, disturbance_torque, air_gap, peak_torque, commands } }
 
 impl<T: Real> DriveSide<T> {

@@ -25,7 +25,6 @@ pub struct LoadSide<T: Real> {
     /// Load torque, positive if it brakes [N m].
     pub torque: T,
 }
-
 state_words! { struct LoadSide<T> { angle_residual, speed, torque } }
 
 impl<T: Real> LoadSide<T> {

@@ -26,7 +26,6 @@ pub struct Filters<T: Real> {
     /// Mesh torque acting on the load side, estimated by the motor side [N m].
     pub mesh_torque: T,
 }
-
 state_words! { struct Filters<T> { drive, load, mesh_torque } }
 
 /// Correction of the link's state without its encoder.

@@ -41,7 +41,6 @@ pub struct LinkWithoutEncoder<T: Real> {
     /// Sum of landing speeds, decaying as bounces do [m/s].
     landing_speed: T,
 }
-
 state_words! {
     struct LinkWithoutEncoder<T> {
         certain, likely, open_periods, position_known, force, landing_speed,

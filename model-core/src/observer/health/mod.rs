@@ -16,12 +16,12 @@ use recovery::{OutputEvidence, OutputRecovery};
 use thresholds::OUTPUT_FAULT;
 use torque_response::TorqueResponseCheck;
 
-use super::estimates::{MotorFault, OutputFault, Source};
 use super::filters::Filters;
 use super::identification::mesh_measurement::MeshMeasurement;
 use super::identification::regressors::{self, ContactSample};
 use super::identification::{IntervalResult, ParameterEstimator};
 use super::sensors::{SensorReadings, Sensors};
+use crate::estimates::{MotorFault, OutputFault, Source};
 use crate::numbers::Real;
 use crate::numbers::integers::saturating_real;
 use crate::numbers::state_words::state_words;
@@ -45,7 +45,6 @@ pub struct Health<T: Real> {
     load_torques: [T; 2],
     intervals_since_store: u16,
 }
-
 state_words! {
     struct Health<T> {
         source, motor, output, output_recovery, response, unseen_link, load_torques, intervals_since_store,

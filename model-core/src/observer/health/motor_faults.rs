@@ -16,10 +16,10 @@
 use super::output_faults::{deflection_tolerance, exceeds_gap};
 use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
 use super::thresholds::{MOTOR_FAULT, PARTS_PER_COUNT, PLAUSIBILITY};
+use crate::estimates::MotorFault;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::deadband;
 use crate::numbers::state_words::state_words;
-use crate::observer::estimates::MotorFault;
 use crate::observer::filters::drive_side::DriveSide;
 use crate::observer::identification::ParameterEstimator;
 use crate::observer::sensors::SensorReadings;
@@ -45,7 +45,6 @@ pub struct MotorFaultDetector<T: Real> {
     plausible_for: u16,
     has_moved: bool,
 }
-
 state_words! {
     struct MotorFaultDetector<T> {
         plausibility, fault, standstill_periods, free_speed, free_travel, standstill_deflection, standstill_force,

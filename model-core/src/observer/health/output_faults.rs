@@ -24,9 +24,9 @@
 
 use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
 use super::thresholds::OUTPUT_FAULT;
+use crate::estimates::OutputFault;
 use crate::numbers::Real;
 use crate::numbers::state_words::state_words;
-use crate::observer::estimates::OutputFault;
 use crate::observer::identification::ParameterEstimator;
 use crate::observer::identification::mesh_measurement::MeshMeasurement;
 use crate::observer::sensors::SensorReadings;
@@ -49,7 +49,6 @@ pub struct OutputFaultDetector<T: Real> {
     /// True if the deflection was unknown in the last period.
     deflection_unknown: bool,
 }
-
 state_words! {
     struct OutputFaultDetector<T> {
         plausibility, silent_periods, standstill_periods, out_of_range_for, deflection, has_jumped,

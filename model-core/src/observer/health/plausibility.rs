@@ -66,7 +66,6 @@ pub struct Plausibility {
     /// Equal readings in a row.
     standstill_readings: u8,
 }
-
 state_words! { struct Plausibility { rate, noise, jump_distance, readings_since_jump, standstill_readings } }
 
 impl Default for Plausibility {

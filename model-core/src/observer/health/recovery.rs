@@ -40,7 +40,6 @@ pub struct OutputRecovery<T: Real> {
     /// Position of the output when it last moved [2^-32 turns].
     position: u32,
 }
-
 state_words! { struct OutputRecovery<T> { agreeing_intervals, steady_intervals, steady_offsets, position } }
 
 impl<T: Real> OutputRecovery<T> {

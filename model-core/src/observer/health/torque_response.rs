@@ -17,9 +17,9 @@
 //! wrong sign until this test; the test then votes for the right sign.
 
 use super::thresholds::TorqueResponseThresholds;
+use crate::estimates::TorqueResponse;
 use crate::numbers::Real;
 use crate::numbers::state_words::state_words;
-use crate::observer::estimates::TorqueResponse;
 use crate::observer::tables::ResponseTable;
 
 /// Blocks between two compared torques.
@@ -53,7 +53,6 @@ pub struct TorqueResponseCheck<T: Real> {
     /// Consecutive blocks without a tooth impact, saturated.
     undisturbed_blocks: u8,
 }
-
 state_words! {
     struct TorqueResponseCheck<T> {
         response, votes, against_torque, test_block, periods, torque, turned, last_block, pairs, undisturbed_blocks,

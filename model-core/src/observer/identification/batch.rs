@@ -43,7 +43,6 @@ pub struct Batch<T: Real, const P: usize> {
     /// Forces on the drive flank, then on the back flank.
     forces: [ForceStatistics<T>; 2],
 }
-
 state_words! {
     struct Batch<T, P> {
         intervals, contact_intervals, batches, contact, open_gap, deflection, forces,
@@ -58,7 +57,6 @@ struct ForceStatistics<T: Real> {
     /// Variance [N^2].
     variance: T,
 }
-
 state_words! { struct ForceStatistics<T> { mean, variance } }
 
 impl<T: Real> ForceStatistics<T> {

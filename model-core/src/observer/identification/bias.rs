@@ -21,7 +21,6 @@ pub struct TorqueBias<T: Real> {
     /// Variances of bias and friction, then their covariance [N^2].
     pub variance: [T; 3],
 }
-
 state_words! { struct TorqueBias<T> { bias, friction, variance } }
 
 impl<T: Real> TorqueBias<T> {

@@ -20,7 +20,6 @@ pub struct CoMotion<T: Real> {
     /// Travel of the link since then in excess of a motion at that speed [m].
     link_departure: T,
 }
-
 state_words! { struct CoMotion<T> { span, drift, initial_travel, link_departure } }
 
 /// Relation of a dwell to the last one.

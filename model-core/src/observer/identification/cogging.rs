@@ -36,7 +36,6 @@ pub struct Cogging<T: Real> {
     flank: Option<Flank>,
     carrying_intervals: u32,
 }
-
 state_words! { struct Cogging<T> { torque, variance, noise, slow, speed, flank, carrying_intervals } }
 
 impl<T: Real> Cogging<T> {

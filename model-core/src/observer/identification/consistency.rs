@@ -19,7 +19,6 @@ pub struct Consistency {
     /// Accepted dwells since the last of these errors.
     accepted_since_error: u8,
 }
-
 state_words! {
     struct Consistency {
         gap_force_intervals, outliers, accepted, variation_errors, accepted_since_error,

@@ -27,7 +27,6 @@ pub struct GapVariation<T: Real> {
     /// Sums of (1): squared relative variations [-], and squared angles [rad^2].
     sums: [T; 2],
 }
-
 state_words! { struct GapVariation<T> { position, dwell_positions, last_flank, sums } }
 
 impl<T: Real> GapVariation<T> {

@@ -37,7 +37,6 @@ pub struct LinkInertia<T: Real> {
     /// Intervals of motion in one direction, with constant dry friction; negative for backward motion.
     one_way_intervals: i32,
 }
-
 state_words! {
     struct LinkInertia<T> {
         sum, stationary_response, slow, mobility, variance, external_variance, one_way_intervals,

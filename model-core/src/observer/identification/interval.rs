@@ -32,7 +32,6 @@ pub struct Interval<T: Real> {
     /// Consecutive intervals well inside the gap.
     pub open_intervals: u8,
 }
-
 state_words! {
     struct Interval<T> {
         periods, sums, task, direction, nearer_flank, updated_on, settled_flank, force, loaded_flank, steady_force,
@@ -48,7 +47,6 @@ pub struct IntervalMean<T: Real> {
     pub force: T,
     pub direction: T,
 }
-
 state_words! { struct IntervalMean<T> { raw_deflection, motor_force, force, direction } }
 
 impl<T: Real> IntervalMean<T> {

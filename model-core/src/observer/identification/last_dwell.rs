@@ -24,7 +24,6 @@ pub struct LastDwell<T: Real, const P: usize> {
     /// True until the dwell is interrupted.
     is_continuous: bool,
 }
-
 state_words! { struct LastDwell<T, P> { regressors, flank, deflection, co_motion, is_stored, is_continuous } }
 
 impl<T: Real, const P: usize> LastDwell<T, P> {

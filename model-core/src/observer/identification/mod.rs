@@ -87,7 +87,6 @@ pub struct ParameterEstimator<T: Real, const P: usize> {
     /// Innovation that updates the parameters in the next period.
     pending_innovation: Option<Innovation<T, P>>,
 }
-
 state_words! {
     struct ParameterEstimator<T, P> {
         least_squares, bias, inertia, cogging, errors, uncertainty, interval, travel, batch, last_dwell, consistency,

@@ -23,7 +23,6 @@ pub struct PositionErrors<T: Real, const P: usize> {
     /// Turn of motor and mesh phase since the last exact computation [rad].
     turned: T,
 }
-
 state_words! { struct PositionErrors<T, P> { open_gap, mid_mesh, mesh, errors, slopes, turned } }
 
 impl<T: Real, const P: usize> PositionErrors<T, P> {

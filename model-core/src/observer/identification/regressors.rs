@@ -65,7 +65,6 @@ pub struct ContactSample<T: Real> {
     /// Sine and cosine of the mesh phase.
     pub mesh: [T; 2],
 }
-
 state_words! { struct ContactSample<T> { flank, force, mesh } }
 
 impl<T: Real> ContactSample<T> {

@@ -26,7 +26,6 @@ pub struct TravelDetector<T: Real> {
     /// Change of the deflection over the window below which no motion is detected [m].
     limit: T,
 }
-
 state_words! {
     struct TravelDetector<T> {
         deflections, forces, directions, newest, filled, rest_intervals, limit,

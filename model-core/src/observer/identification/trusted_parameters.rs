@@ -17,7 +17,6 @@ pub struct TrustedParameters<T: Real, const P: usize> {
     /// Variances of half-gap and offset over their initial variances [-].
     variances: [T; 2],
 }
-
 state_words! { struct TrustedParameters<T, P> { values, variances } }
 
 impl<T: Real, const P: usize> TrustedParameters<T, P> {

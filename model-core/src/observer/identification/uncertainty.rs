@@ -80,7 +80,6 @@ pub struct Uncertainty<T: Real> {
     /// Part that is updated next.
     next_part: u8,
 }
-
 state_words! {
     struct Uncertainty<T> {
         force_deviation, mean_force_deviation, steady_force_deviation, combined_deviation, deflection_variance,

@@ -24,7 +24,6 @@ pub struct Counter {
     rejected: u8,
     began: bool,
 }
-
 state_words! { struct Counter { raw, place, turns, rejected, began } }
 
 /// Result of a reading.
@@ -147,7 +146,6 @@ pub struct Counts {
     /// State while the motor encoder is excluded.
     suspicion: Option<Suspicion>,
 }
-
 state_words! {
     struct Counts {
         motor, output, difference, start, has_reference, implied, output_time, motor_time, suspicion,
@@ -162,7 +160,6 @@ struct Suspicion {
     /// Travel of the motor counts since then, as far as raw counts show [units of the difference].
     travel: i64,
 }
-
 state_words! { struct Suspicion { difference, travel } }
 
 /// Result of the readings of one period.

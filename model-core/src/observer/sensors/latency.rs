@@ -32,7 +32,6 @@ pub struct Latency {
     /// recovery plus `LATENCY.tolerated_late_periods`.
     lateness: u8,
 }
-
 state_words! { struct Latency { age, lateness } }
 
 impl Latency {

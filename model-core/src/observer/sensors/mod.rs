@@ -9,9 +9,9 @@ pub(super) mod thresholds;
 use counts::{CountChange, Counts};
 use latency::{Latency, SampleAge};
 
+use crate::estimates::Notices;
 use crate::numbers::Real;
 use crate::numbers::state_words::state_words;
-use crate::observer::estimates::Notices;
 use crate::observer::samples::{Reading, Samples};
 use crate::observer::tables::{ClockTable, ObserverTables};
 
@@ -25,7 +25,6 @@ pub struct Sensors {
     /// Periods for which a rejected torque sample may still affect the filters.
     torque_unknown_for: u16,
 }
-
 state_words! { struct Sensors { counts, latency, time, torque_unknown_for } }
 
 /// Evaluated samples of one period.

@@ -29,7 +29,6 @@ pub struct LeastSquares<T: Real, const P: usize> {
     /// Parameters [SI].
     pub values: [T; P],
 }
-
 state_words! { struct LeastSquares<T, P> { factors, values } }
 
 /// Innovation of a deflection, in standard deviations of one deflection's noise.
@@ -42,7 +41,6 @@ pub struct Innovation<T: Real, const P: usize> {
     /// Variance of `value`.
     pub variance: T,
 }
-
 state_words! { struct Innovation<T, P> { projected, value, variance } }
 
 impl<T: Real, const P: usize> Innovation<T, P> {

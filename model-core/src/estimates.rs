@@ -14,7 +14,6 @@ pub struct Estimate<T: Real = f32> {
     /// False if the estimate must not be used: the value is then the last valid or the designed value.
     pub valid: bool,
 }
-
 state_words! { struct Estimate<T> { value, variance, valid } }
 
 /// Position and speed of a shaft.
@@ -27,7 +26,6 @@ pub struct Shaft<T: Real> {
     /// Speed [rad/s].
     pub speed: T,
 }
-
 state_words! { struct Shaft<T> { turns, fraction, speed } }
 
 /// Encoders on which the estimates are based.
@@ -99,7 +97,6 @@ pub enum MotorFault {
     /// Counts moved farther than the motor can turn: a jump, a slip or random readings.
     Jumped,
 }
-
 state_words! { enum MotorFault { Silent, Late, Frozen, Jumped } }
 
 /// Reason for which the output encoder is excluded.
@@ -117,7 +114,6 @@ pub enum OutputFault {
     /// Counts imply an impossible deflection: jump, offset, slip or defect.
     OutOfRange,
 }
-
 state_words! { enum OutputFault { Absent, Unheard, Silent, Frozen, OutOfRange } }
 
 /// Result of the sign check of torque and motor encoder (O25).
@@ -135,7 +131,6 @@ pub enum TorqueResponse {
     /// observer restarts; the compensation gives no torque.
     Reversed,
 }
-
 state_words! { enum TorqueResponse { Unknown, Tested, Right, Reversed } }
 
 /// Defects of the last samples. The observer continues with its previous state.
@@ -152,7 +147,6 @@ pub struct Notices {
     /// encoder. Without agreement the encoder has slipped, and the offset is estimated anew.
     pub motor_jumped: bool,
 }
-
 state_words! { struct Notices { torque_unknown, out_of_time, motor_implausible, motor_jumped } }
 
 /// Estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
@@ -220,7 +214,6 @@ pub struct Estimates<T: Real = f32> {
     /// Link, without the estimated encoder errors. Without an output encoder the link is inferred from the motor.
     pub link: Shaft<T>,
 }
-
 state_words! {
     struct Estimates<T> {
         source, notices, torque_response, gap, gap_rate, flank_shift, flank_shift_slope, contact, reported_contact,

@@ -1,7 +1,7 @@
 //! FDCAN of STM32H743 (RM0433 56): message RAM shared by both peripherals and laid out by registers, clock of PLL 1.
 //!
-//! Erratum (ES0392): chips of revision Y read wrong message RAM while two FDCAN are used. A board has one, and the reset
-//! leaves the other one in its initialisation.
+//! Erratum (ES0392): chips of revisions Y and W read wrong message RAM while two FDCAN are used. A board uses one, and the
+//! reset leaves the other one in its initialisation.
 
 use super::bounded_wait::wait_until;
 use super::pac;

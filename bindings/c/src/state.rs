@@ -33,6 +33,11 @@ impl Identity {
     }
 }
 
+/// Number of two words.
+fn wide(low: u32, high: u32) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
+}
+
 /// Digest of all words but those of the digest.
 fn digest_of(identity: &[u32], content: &[u32]) -> u64 {
     identity.iter().chain(content).fold(START, |running, word| chain(running, u64::from(*word)))
@@ -82,19 +87,18 @@ pub unsafe fn load<const N: usize>(
     // SAFETY: aligned, not NULL, and this many words by the caller's promise.
     let state = unsafe { &*state.cast::<[u32; N]>() };
     let (head, content) = state.split_first_chunk::<HEAD>().ok_or(JointStatus::WrongSize)?;
-    let [kind, size, a, b, tables_low, tables_high, digest_low, digest_high] = *head;
-    let [own_kind, own_size, own_a, own_b, own_low, own_high] = identity.words();
-    if kind != own_kind {
+    let [kind, size, layout_low, layout_high, tables_low, tables_high, digest_low, digest_high] = *head;
+    if kind != identity.kind {
         return Err(JointStatus::NotAState);
     }
-    if [size, a, b] != [own_size, own_a, own_b] {
+    // Numbers and no arrays: arrays are compared by memcmp, which a program without a C library does not have.
+    if size != identity.layout.words as u32 || wide(layout_low, layout_high) != identity.layout.digest {
         return Err(JointStatus::WrongStateVersion);
     }
-    if [tables_low, tables_high] != [own_low, own_high] {
+    if wide(tables_low, tables_high) != identity.tables {
         return Err(JointStatus::OtherTables);
     }
-    let digest = digest_of(&identity.words(), content);
-    if [digest_low, digest_high] != [digest as u32, (digest >> 32) as u32] {
+    if wide(digest_low, digest_high) != digest_of(&identity.words(), content) {
         return Err(JointStatus::DamagedState);
     }
     read(&mut Reader::new(content));

@@ -97,10 +97,10 @@ impl AnyObserver {
         Ok(loaded?)
     }
 
-    /// Identity of the state of an observer of a kind.
-    fn identity<const P: usize>(tables: u64) -> Identity {
-        let layout = STEPPED.with("observer", Observer::<'static, f32, P>::STATE_LAYOUT);
-        Identity { kind: Self::MARK ^ P as u32, layout, tables }
+    /// Identity of the state of an observer of this kind.
+    fn identity(&self, tables: u64) -> Identity {
+        let (maps, layout) = if self.has_maps { (MAPPED, Mapped::STATE_LAYOUT) } else { (PLAIN, Plain::STATE_LAYOUT) };
+        Identity { kind: Self::MARK ^ maps as u32, layout: STEPPED.with("observer", layout), tables }
     }
 }
 
@@ -236,9 +236,9 @@ pub unsafe extern "C" fn joint_observer_save_state(
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open_shared::<AnyObserver>(observer) }?;
-        let (any, tables) = (&object.value, object.tables_digest());
+        let any = &object.value;
+        let identity = any.identity(object.tables_digest());
         let observer = any.observer.as_ptr();
-        let identity = if any.has_maps { AnyObserver::identity::<MAPPED> } else { AnyObserver::identity::<PLAIN> };
         let write = |to: &mut Writer| {
             any.stepped.write(to);
             // SAFETY: `has_maps` tells the kind of the observer.
@@ -247,7 +247,7 @@ pub unsafe extern "C" fn joint_observer_save_state(
             }
         };
         // SAFETY: the caller's promise, as required by the header.
-        unsafe { save::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity(tables), write) }
+        unsafe { save::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity, write) }
     })
     .into()
 }
@@ -264,10 +264,9 @@ pub unsafe extern "C" fn joint_observer_load_state(
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<AnyObserver>(observer) }?;
-        let tables = object.tables_digest();
+        let identity = object.value.identity(object.tables_digest());
         let any = &mut object.value;
         let observer = any.observer.as_mut_ptr();
-        let identity = if any.has_maps { AnyObserver::identity::<MAPPED> } else { AnyObserver::identity::<PLAIN> };
         let read = |from: &mut Reader| {
             any.stepped = bool::read(from);
             // SAFETY: `has_maps` tells the kind of the observer.
@@ -276,7 +275,7 @@ pub unsafe extern "C" fn joint_observer_load_state(
             }
         };
         // SAFETY: the caller's promise, as required by the header.
-        unsafe { load::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity(tables), read) }
+        unsafe { load::<JOINT_OBSERVER_STATE_WORDS>(state, words, &identity, read) }
     })
     .into()
 }

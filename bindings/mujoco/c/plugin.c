@@ -304,11 +304,31 @@ static Motion motion_of(const Instance *own) {
     return motion;
 }
 
+/* Splits an angle into whole turns and the rest. */
+static void set_turns(double turns, int32_t *whole, float *fraction) {
+    *whole = (int32_t)turns;
+    *fraction = (float)(turns - (double)*whole);
+}
+
+/* Copies words of a state from numbers of plugin_state, and back. */
+static void words_of(const mjtNum *numbers, uint32_t *words, int count) {
+    for (int i = 0; i < count; i++) {
+        words[i] = (uint32_t)numbers[i];
+    }
+}
+
+static void numbers_of(const uint32_t *words, double *numbers, int count) {
+    for (int i = 0; i < count; i++) {
+        numbers[i] = (double)words[i];
+    }
+}
+
 /* Turns the whole joint; the teeth keep their deformations. */
 static void shift(Instance *own, double angle_rad, double speed) {
-    const double turns = angle_rad / TURN_RAD;
-    const int32_t whole = (int32_t)turns;
-    check(joint_plant_shift(&own->plant, whole, (float)(turns - (double)whole), (float)speed), "joint_plant_shift");
+    int32_t whole;
+    float fraction;
+    set_turns(angle_rad / TURN_RAD, &whole, &fraction);
+    check(joint_plant_shift(&own->plant, whole, fraction, (float)speed), "joint_plant_shift");
 }
 
 /* State of the joint at the start of a step. */
@@ -322,9 +342,7 @@ static Motion begin(Instance *own, const mjtNum *state, double angle, double spe
     } else {
         uint32_t words[JOINT_PLANT_STATE_WORDS];
         double error, explained;
-        for (int i = 0; i < JOINT_PLANT_STATE_WORDS; i++) {
-            words[i] = (uint32_t)state[i];
-        }
+        words_of(state, words, JOINT_PLANT_STATE_WORDS);
         check(joint_plant_load(&own->plant, words, JOINT_PLANT_STATE_WORDS), "joint_plant_load");
         motion = motion_of(own);
         error = angle - motion.link_rad;
@@ -375,12 +393,6 @@ static Target target_of(const Instance *own, const mjtNum *state, double control
     return target;
 }
 
-/* Splits an angle into whole turns and the rest. */
-static void set_turns(double turns, int32_t *whole, float *fraction) {
-    *whole = (int32_t)turns;
-    *fraction = (float)(turns - (double)*whole);
-}
-
 /* State of observer and compensation at the start of a step. */
 static void begin_controller(Instance *own, const mjtNum *state) {
     double *const next = own->next;
@@ -391,12 +403,8 @@ static void begin_controller(Instance *own, const mjtNum *state) {
         check(start_controller(own), "start of the controller");
     } else if (own->holds == 0 || memcmp(own->held, state + OBSERVER, sizeof own->held) != 0) {
         uint32_t observer[JOINT_OBSERVER_STATE_WORDS], compensation[JOINT_COMPENSATION_STATE_WORDS];
-        for (int i = 0; i < JOINT_OBSERVER_STATE_WORDS; i++) {
-            observer[i] = (uint32_t)state[OBSERVER + i];
-        }
-        for (int i = 0; i < JOINT_COMPENSATION_STATE_WORDS; i++) {
-            compensation[i] = (uint32_t)state[COMPENSATION + i];
-        }
+        words_of(state + OBSERVER, observer, JOINT_OBSERVER_STATE_WORDS);
+        words_of(state + COMPENSATION, compensation, JOINT_COMPENSATION_STATE_WORDS);
         check(joint_observer_load_state(&own->observer, observer, JOINT_OBSERVER_STATE_WORDS), "joint_observer_load_state");
         check(joint_compensation_load_state(&own->compensation, compensation, JOINT_COMPENSATION_STATE_WORDS),
               "joint_compensation_load_state");
@@ -481,12 +489,8 @@ static void end_controller(Instance *own, double control, const JointTorque *tor
     check(joint_observer_save_state(&own->observer, observer, JOINT_OBSERVER_STATE_WORDS), "joint_observer_save_state");
     check(joint_compensation_save_state(&own->compensation, compensation, JOINT_COMPENSATION_STATE_WORDS),
           "joint_compensation_save_state");
-    for (int i = 0; i < JOINT_OBSERVER_STATE_WORDS; i++) {
-        next[OBSERVER + i] = (double)observer[i];
-    }
-    for (int i = 0; i < JOINT_COMPENSATION_STATE_WORDS; i++) {
-        next[COMPENSATION + i] = (double)compensation[i];
-    }
+    numbers_of(observer, next + OBSERVER, JOINT_OBSERVER_STATE_WORDS);
+    numbers_of(compensation, next + COMPENSATION, JOINT_COMPENSATION_STATE_WORDS);
     memcpy(own->held, next + OBSERVER, sizeof own->held);
     own->holds = 1;
 }
@@ -543,9 +547,7 @@ static void actuate(const mjModel *m, mjData *d, Instance *own, const mjtNum *st
     d->actuator_force[output] = mean;
 
     check(joint_plant_save(&own->plant, words, JOINT_PLANT_STATE_WORDS), "joint_plant_save");
-    for (int i = 0; i < JOINT_PLANT_STATE_WORDS; i++) {
-        own->next[i] = (double)words[i];
-    }
+    numbers_of(words, own->next, JOINT_PLANT_STATE_WORDS);
     own->next[STARTED] = 1.0;
     own->next[SPEED] = speed;
     own->next[PREDICTED] = mean * inverse_inertia + smooth;

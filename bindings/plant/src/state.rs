@@ -2,6 +2,7 @@
 //! another process too.
 
 use model_core::gears::{Relative, RigidBody, State};
+use model_core::numbers::state_words::{Reader, StateWords, Writer};
 use model_core::virtual_joint::tables::COMMAND_QUEUE_LENGTH;
 use model_core::virtual_joint::{ActingTorques, VirtualJoint, VirtualJointState};
 
@@ -20,57 +21,22 @@ pub enum StateError {
     NotFinite,
 }
 
-/// Words being written, one after the other.
-struct Writer<'a> {
-    words: &'a mut [u32; STATE_WORDS],
-    count: usize,
+/// Writes relative coordinates or rates, with zeros for the planets that the joint does not have.
+fn write_relative<const N: usize>(of: &Relative<f32, N>, to: &mut Writer) {
+    of.planets.write(to);
+    (N..MOST_PLANETS).for_each(|_| to.word(0));
+    [of.gap, of.wind_up].write(to);
 }
 
-impl Writer<'_> {
-    fn word(&mut self, word: u32) {
-        if let Some(place) = self.words.get_mut(self.count) {
-            *place = word;
-        }
-        self.count += 1;
-    }
-
-    fn wide(&mut self, value: u64) {
-        self.word(value as u32);
-        self.word((value >> 32) as u32);
-    }
-
-    fn numbers(&mut self, values: &[f32]) {
-        values.iter().for_each(|value| self.word(value.to_bits()));
-    }
-
-    fn relative<const N: usize>(&mut self, of: &Relative<f32, N>) {
-        self.numbers(&of.planets);
-        self.numbers(&[0.0; MOST_PLANETS][N.min(MOST_PLANETS)..]);
-        self.numbers(&[of.gap, of.wind_up]);
-    }
-}
-
-/// Words being read, one after the other.
-struct Reader<'a> {
-    words: &'a [u32; STATE_WORDS],
-    count: usize,
+/// Numbers being read, all of which must be finite.
+struct Numbers<'words> {
+    from: Reader<'words>,
     is_finite: bool,
 }
 
-impl Reader<'_> {
-    fn word(&mut self) -> u32 {
-        let word = self.words.get(self.count).copied().unwrap_or(0);
-        self.count += 1;
-        word
-    }
-
-    fn wide(&mut self) -> u64 {
-        let low = u64::from(self.word());
-        low | (u64::from(self.word()) << 32)
-    }
-
+impl Numbers<'_> {
     fn number(&mut self) -> f32 {
-        let value = f32::from_bits(self.word());
+        let value = f32::read(&mut self.from);
         self.is_finite &= value.is_finite();
         value
     }
@@ -85,18 +51,18 @@ impl Reader<'_> {
 /// Writes the state of a joint.
 pub fn save<const N: usize>(joint: &VirtualJoint<'_, f32, N>, words: &mut [u32; STATE_WORDS]) {
     let state = joint.state();
-    let mut to = Writer { words, count: 0 };
+    let mut to = Writer::new(words);
     to.word(N as u32);
-    to.relative(&state.gears.position);
-    to.relative(&state.gears.rate);
-    to.word(state.gears.rigid.turns as u32);
-    to.wide(state.gears.rigid.fraction);
-    to.wide(state.gears.rigid.speed as u64);
-    to.wide(state.gears.phase);
-    to.numbers(&state.commands);
-    to.numbers(&[state.current]);
-    to.word(state.periods);
-    to.numbers(&[state.acting.air_gap, state.acting.drive, state.acting.load]);
+    write_relative(&state.gears.position, &mut to);
+    write_relative(&state.gears.rate, &mut to);
+    state.gears.rigid.turns.write(&mut to);
+    state.gears.rigid.fraction.write(&mut to);
+    state.gears.rigid.speed.write(&mut to);
+    state.gears.phase.write(&mut to);
+    state.commands.write(&mut to);
+    state.current.write(&mut to);
+    state.periods.write(&mut to);
+    [state.acting.air_gap, state.acting.drive, state.acting.load].write(&mut to);
 }
 
 /// Replaces the state of a joint; a refused state changes nothing.
@@ -104,17 +70,18 @@ pub fn load<const N: usize>(
     joint: &mut VirtualJoint<'_, f32, N>,
     words: &[u32; STATE_WORDS],
 ) -> Result<(), StateError> {
-    let mut from = Reader { words, count: 0, is_finite: true };
-    if from.word() != N as u32 {
+    let mut words = Numbers { from: Reader::new(words), is_finite: true };
+    if words.from.word() != N as u32 {
         return Err(StateError::OtherJoint);
     }
-    let (position, rate) = (from.relative(), from.relative());
-    let rigid = RigidBody { turns: from.word() as i32, fraction: from.wide(), speed: from.wide() as i64 };
-    let gears = State { position, rate, rigid, phase: from.wide() };
-    let commands = core::array::from_fn(|_| from.number());
-    let (current, periods) = (from.number(), from.word());
-    let acting = ActingTorques { air_gap: from.number(), drive: from.number(), load: from.number() };
-    if !from.is_finite {
+    let (position, rate) = (words.relative(), words.relative());
+    let from = &mut words.from;
+    let rigid = RigidBody { turns: i32::read(from), fraction: u64::read(from), speed: i64::read(from) };
+    let gears = State { position, rate, rigid, phase: u64::read(from) };
+    let commands = core::array::from_fn(|_| words.number());
+    let (current, periods) = (words.number(), words.from.word());
+    let acting = ActingTorques { air_gap: words.number(), drive: words.number(), load: words.number() };
+    if !words.is_finite {
         return Err(StateError::NotFinite);
     }
     joint.set_state(&VirtualJointState { gears, commands, current, periods, acting });

@@ -147,6 +147,7 @@ macro_rules! wide_scalars {
 }
 
 wide_scalars! {
+    u64: |value| value, |bits| bits;
     i64: |value| value as u64, |bits| bits as i64;
     f64: f64::to_bits, f64::from_bits;
 }

@@ -1,9 +1,10 @@
 //! Images on register-level models of their boards: the package `board-model`, which has another licence than the
 //! workspace and is therefore a separate program, started through cargo.
 
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use board::device::packages;
+use board::device::tool;
 use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;
@@ -16,8 +17,7 @@ const PACKAGES: [&str; 3] = ["cmake", "libclang-dev", "build-essential"];
 pub fn check(progress: &Progress) -> Outcome<()> {
     packages::ensure(&PACKAGES, "to build the model of the boards", &|line| progress.print_message(line))?;
     progress.clear();
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
+    let status = tool::cargo()
         .args(["run", "--quiet", "--release", "--manifest-path", "board-model/Cargo.toml", "--", "check"])
         .current_dir(workspace())
         .stdin(Stdio::null())

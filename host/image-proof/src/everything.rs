@@ -2,7 +2,7 @@
 //! the proofs about the step on the emulated board, and the tests that need the emulated board.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use link::messages::Role;
 
@@ -13,6 +13,7 @@ use board::device::board::{Board, Chip};
 use board::device::image;
 use board::device::lint;
 use board::device::tick_time;
+use board::device::tool;
 use board::device::toolchain::Toolchain;
 use joint_file::named;
 use report::failure::{Failure, Outcome};
@@ -138,8 +139,7 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
 /// Runs the tests that `cargo test` ignores, with cargo's own output; the packages and thus the features are those that
 /// `cargo test` has just built.
 fn emulator_tests() -> Outcome<()> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
+    let status = tool::cargo()
         .arg("test")
         .args(["emulated_board", "same_bits", "tick_audit"].iter().flat_map(|name| ["--test", name]))
         .args(["--", "--ignored"])

@@ -49,7 +49,7 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
 
 /// Cargo command for a package of the workspace.
 fn cargo(subcommand: &str, package: &str) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = tool::cargo();
     command.args([subcommand, "--package", package, "--manifest-path"]);
     command.arg(workspace().join("Cargo.toml"));
     command

@@ -1,9 +1,8 @@
 //! Lists of a release: `contents.json` says what each file is, `SHA256SUMS` is for `sha256sum --check`.
 
-use serde::Serialize;
-use sha2::{Digest, Sha256};
-
+use report::digest::sha256;
 use report::failure::{Failure, Outcome};
+use serde::Serialize;
 
 use crate::source::Source;
 
@@ -62,11 +61,6 @@ struct Contents<'f> {
     compilers: &'f [String],
     files: Vec<Entry<'f>>,
     left_out: &'f [LeftOut],
-}
-
-/// SHA-256 in hexadecimal digits.
-fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Adds the two lists to the files, which are sorted by path.

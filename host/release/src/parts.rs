@@ -67,7 +67,7 @@ pub fn wheel(builds: &Builds<'_>) -> Outcome<File> {
 
 /// The command `joint` with its test files, as an archive for this kind of machine.
 pub fn program(builds: &Builds<'_>, notices: &[u8]) -> Outcome<File> {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = tool::cargo();
     reproducible(&mut command, builds.source, builds.folder)
         .args(["build", "--release", "--locked", "--package", "joint", "--bin", "joint", "--target-dir"])
         .arg(builds.folder);
@@ -159,7 +159,7 @@ fn built(
 
 /// Pages of `docs` as a book, by mdbook, after the house's check of their links.
 pub fn book(builds: &Builds<'_>) -> Outcome<File> {
-    let mut check = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut check = tool::cargo();
     check.current_dir(workspace()).args([
         "test",
         "--quiet",

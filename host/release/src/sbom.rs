@@ -4,7 +4,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use board::device::cross_build::TARGET;
 use board::device::tool;
@@ -111,12 +110,11 @@ impl Materials {
     /// Reads the packages that the shipped ones are built from, on this machine and on boards. Dependencies of tests and of
     /// build scripts are left out.
     pub fn read() -> Outcome<Self> {
-        let cargo = || Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        let version = tool::capture_output(cargo().arg("-vV").current_dir(workspace()))?;
+        let version = tool::capture_output(tool::cargo().arg("-vV").current_dir(workspace()))?;
         let host = version.lines().find_map(|line| line.strip_prefix("host: ")).unwrap_or_default().to_owned();
         let mut materials = Self::default();
         for platform in [&*host, TARGET] {
-            let mut command = cargo();
+            let mut command = tool::cargo();
             command.current_dir(workspace()).args(["metadata", "--format-version", "1", "--locked"]);
             let text = tool::capture_output(command.args(["--filter-platform", platform]))?;
             let metadata = serde_json::from_str(&text);

@@ -42,7 +42,7 @@ pub fn mdbook(folder: &Path, say: Say<'_>) -> Outcome<PathBuf> {
         return Ok(program);
     }
     say(&format!("building mdbook {MDBOOK} below the build directory, once"));
-    let mut install = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut install = tool::cargo();
     install
         .args(["install", "mdbook", "--version", MDBOOK, "--locked", "--no-default-features", "--features", "search"])
         .arg("--root")

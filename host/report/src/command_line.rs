@@ -12,6 +12,7 @@ use crate::escape::{escaped, is_plain};
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
 use crate::interruption::UninterruptedWork;
 use crate::output;
+use crate::workspace::has_sources;
 
 /// Parses the command line of this process by `command`, runs the program and turns the outcome into an exit code;
 /// prints a failure.
@@ -74,6 +75,11 @@ fn show<T>(
         // Without styles, which could not be distinguished from those in a file.
         output::remark(error.render().to_string().trim_end());
     }
+}
+
+/// Words that start this command: `cargo joint` in the workspace, `joint` of an installed program.
+pub fn program() -> &'static str {
+    if has_sources() { "cargo joint" } else { "joint" }
 }
 
 /// Quotes a word for a shell.

@@ -1,9 +1,10 @@
 //! Common parts of every command: failures and exit codes, complete-or-nothing files, progress, interruption, checks,
-//! seeds, provenance, HTML pages and vector plots.
+//! digests, seeds, provenance, HTML pages and vector plots.
 
 pub mod checks;
 pub mod command_line;
 pub mod contacts;
+pub mod digest;
 pub mod document;
 pub mod escape;
 pub mod failure;

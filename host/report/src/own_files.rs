@@ -11,6 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use sha2::{Digest, Sha256};
 
+use crate::digest::hexadecimal;
 use crate::failure::{Failure, Outcome};
 use crate::write::{locked, try_to_write, write_failure};
 
@@ -216,7 +217,7 @@ fn is_partial_header(text: &str) -> bool {
 fn digest(path: &Path) -> io::Result<String> {
     let mut hash = Sha256::new();
     io::copy(&mut File::open(path)?, &mut hash)?;
-    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hexadecimal(&hash.finalize()))
 }
 
 fn list_error(folder: &Path, why: &dyn std::fmt::Display) -> Failure {

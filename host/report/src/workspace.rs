@@ -43,6 +43,11 @@ fn data_beside_program() -> PathBuf {
     program.ancestors().nth(2).unwrap_or(Path::new("")).join(SHARED)
 }
 
+/// Returns true in an installed package that has declared itself by [`set_installed`]: the program is its interpreter.
+pub fn is_declared_installed() -> bool {
+    INSTALLED.get().is_some()
+}
+
 /// Returns true if the program runs in the workspace that it was built from.
 pub fn has_sources() -> bool {
     INSTALLED.get().is_none() && PACKAGE.is_some()

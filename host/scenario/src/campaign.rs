@@ -22,7 +22,7 @@ use super::trace::Trace;
 use super::values::MetricValues;
 use super::verdict::{Results, check_assertions};
 use report::checks::Verdict;
-use report::command_line::quoted;
+use report::command_line::{program, quoted};
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 use report::seeds::Seeds;
@@ -255,7 +255,8 @@ fn replay_command(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> 
         (None, true) => " --full".to_owned(),
         (None, false) => String::new(),
     };
-    format!("cargo joint hil {} {place} --plant {}{seeds}", quoted(&test.name), options.plant.word())
+    let (command, name) = (program(), quoted(&test.name));
+    format!("{command} hil {name} {place} --plant {}{seeds}", options.plant.word())
 }
 
 fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, watch: Watch<'_>) -> Outcome<FinishedRun> {

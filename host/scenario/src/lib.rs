@@ -5,8 +5,8 @@
 //! `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through `faults`,
 //! with observer and compensation behind `port`, and `run_history` stores the run; `metrics`, `values` and
 //! `observer_metrics` compute the figures, `verdict` compares them with their bounds, `campaign` combines all seeds;
-//! `task_runs` runs the seeds as tasks of a cluster; `page`, `junit`, `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are the
-//! controller's part of a log.
+//! `task_runs` runs the seeds as tasks of a cluster; `page`, `junit`, `log_file` and `record` are the results on disk;
+//! `controller_log` and `estimate_fields` are the controller's part of a log.
 
 mod any_motion;
 mod campaign;

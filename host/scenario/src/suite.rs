@@ -5,7 +5,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use link::messages::Role;
-use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes};
 use super::faults::check_broken_tooth;
@@ -17,6 +16,7 @@ use board::profile::check_length;
 use joint_file::diagnostic;
 use joint_file::named::{self, Loaded};
 use joint_file::warnings;
+use report::digest::sha256;
 use report::failure::{Failure, Outcome};
 use report::input;
 
@@ -217,10 +217,6 @@ fn load_joint(name: &str, folder: &Path) -> Outcome<Loaded> {
     let loaded = named::load(if beside.is_file() { &beside } else { Path::new(name) })?;
     warnings::print(&loaded);
     Ok(loaded)
-}
-
-fn sha256(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Test {

@@ -10,9 +10,9 @@ use report::progress::Progress;
 use report::write::write_bytes;
 use report::{folder, interruption, output};
 
-use crate::digest::sha256;
 use crate::list::{Task, TaskList};
 use crate::{EngineArguments, dask, slurm};
+use report::digest::sha256;
 
 /// Name of the list.
 const LIST: &str = "list.json";

@@ -7,7 +7,6 @@
 //! `package` is a result with files.
 
 mod dask;
-mod digest;
 mod folder;
 mod list;
 pub mod package;

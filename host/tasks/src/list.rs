@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use report::failure::{Failure, Outcome};
 use report::input;
 
-use crate::digest::sha256;
 use crate::program;
+use report::digest::sha256;
 
 /// Name and version of the format; the version rises when a field changes its meaning or is removed.
 const SCHEMA: &str = "joint-tasks/1";

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use report::provenance;
 
-use crate::digest::sha256;
+use report::digest::sha256;
 
 static VERSION: OnceLock<String> = OnceLock::new();
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
-use report::workspace::has_sources;
+use report::workspace::is_declared_installed;
 use report::write::write_text;
 
 /// Name of the script.
@@ -69,7 +69,8 @@ fn ranges(numbers: &[usize]) -> String {
 
 /// Command that starts this program on another machine with the same files.
 fn program() -> Outcome<String> {
-    if !has_sources() {
+    // The package of Python has no program of its own; a release has.
+    if is_declared_installed() {
         return Ok(format!("{} -m lostmotion", quoted(&super::dask::python())));
     }
     let path: PathBuf = std::env::current_exe()

@@ -75,7 +75,7 @@ pub fn compile_library_for_host(
 ) -> Outcome<[Vec<u8>; 2]> {
     let folder = target_directory.join("c-library");
     let _lock = lock(&folder, say)?;
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = tool::cargo();
     clear_host_settings(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
     add_library_arguments(&mut command, package, "staticlib,cdylib", features);
     command.arg("--").arg(format!("-Clink-arg=-Wl,-soname,{soname}"));

@@ -17,9 +17,10 @@ use super::Say;
 use super::board::Board;
 use super::compile::{FIRMWARE_PACKAGE, PROFILE, compile, write_atomically};
 pub use super::role::{DRIVE, role_name};
-use super::sources::{self, hexadecimal};
+use super::sources;
 use super::tick_time::{RateCheck, default_control_rate};
 use super::toolchain::{TARGET_FLAGS, Toolchain};
+use report::digest::{hexadecimal, sha256};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
@@ -314,7 +315,7 @@ fn build(
         sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;
     Ok(Image {
         elf: place,
-        sha256: hexadecimal(&Sha256::digest(&elf)),
+        sha256: sha256(&elf),
         flash_bytes,
         ram_bytes,
         compiler: toolchain.compiler().to_owned(),

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 
 use super::compile::write_atomically;
 use super::toolchain::Toolchain;
+use report::digest::{hexadecimal, sha256};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
@@ -45,7 +46,7 @@ pub(super) fn up_to_date(
     let [truth, told, board] = texts;
     let from = digest(toolchain, &[&truth?, &told?, &board?, settings.as_bytes()])?;
     let note = place.with_extension("from");
-    let noted = |elf: &[u8]| format!("{from} {}\n", hexadecimal(&Sha256::digest(elf)));
+    let noted = |elf: &[u8]| format!("{from} {}\n", sha256(elf));
     if let Ok(elf) = fs::read(place)
         && fs::read_to_string(&note).is_ok_and(|text| text == noted(&elf))
     {
@@ -55,11 +56,6 @@ pub(super) fn up_to_date(
     write_atomically(images, place, &elf)?;
     write_atomically(images, &note, noted(&elf).as_bytes())?;
     Ok(elf)
-}
-
-/// Bytes in hexadecimal digits.
-pub(super) fn hexadecimal(digest: &[u8]) -> String {
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Digest over sources, toolchain and further texts, as 64 hexadecimal digits.

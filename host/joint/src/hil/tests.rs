@@ -7,7 +7,7 @@ use link::messages::Role;
 
 use super::arguments::{Arguments, TESTS};
 use board::line_options::RoleName;
-use report::command_line::quoted;
+use report::command_line::{program, quoted};
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::workspace::workspace;
@@ -91,7 +91,8 @@ fn check_tasks(arguments: &Arguments) -> Outcome<()> {
 fn task_options(arguments: &Arguments, group: &TestGroup<'_>) -> Option<TaskOptions> {
     task_arguments(arguments).iter().any(|(_, given)| *given).then(|| {
         let mut repeat = format!(
-            "cargo joint hil {} --host --plant {} --resume",
+            "{} hil {} --host --plant {} --resume",
+            program(),
             quoted(&group.path.display().to_string()),
             group.plant.word()
         );

@@ -40,7 +40,7 @@ use summary::SimulationSummary;
 
 use joint_file::{named, warnings};
 use live::Live;
-use report::command_line::quoted;
+use report::command_line::{program, quoted};
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -157,7 +157,7 @@ fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> 
 
 /// Command that repeats this run.
 fn replay_command(arguments: &Arguments) -> String {
-    let mut command = format!("cargo joint sim {}", quoted(&arguments.file.display().to_string()));
+    let mut command = format!("{} sim {}", program(), quoted(&arguments.file.display().to_string()));
     command += &format!(" --scheme {}", arguments.scheme.name());
     command += &arguments.motion.replay();
     if let Some(every) = arguments.every {

@@ -5,10 +5,10 @@ use std::fmt::Display;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::grid::Grid;
 use super::metrics::Metric;
+use report::digest::sha256;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::output;
@@ -116,9 +116,4 @@ impl Manifest {
             |(what, one, other)| format!("its {what} is `{}`, not `{}`", other.trim(), one.trim()),
         ))
     }
-}
-
-/// SHA-256 in hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use folder::SweepFolder;
 use grid::Grid;
-use manifest::{Manifest, sha256};
+use manifest::Manifest;
 use metrics::Metric;
 use points::Computation;
 pub use points::{KIND, compute};
@@ -27,7 +27,8 @@ use crate::sim::scheme::{SchemeChoice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use joint_file::warnings;
-use report::command_line::quoted;
+use report::command_line::{program, quoted};
+use report::digest::sha256;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::interruption::UninterruptedWork;
@@ -187,7 +188,7 @@ fn usual_folder(manifest: &Manifest) -> PathBuf {
 
 /// Command that continues this sweep in its own process.
 fn repeat_command(arguments: &Arguments, path: &Path) -> String {
-    let mut command = format!("cargo joint sweep {}", quoted(&arguments.file.display().to_string()));
+    let mut command = format!("{} sweep {}", program(), quoted(&arguments.file.display().to_string()));
     for vary in &arguments.vary {
         command += &format!(" --vary {}", quoted(vary));
     }

@@ -6,11 +6,12 @@ use std::ops::Range;
 use clap::{Parser, ValueEnum};
 
 use super::grid::Grid;
-use super::manifest::{Manifest, sha256};
+use super::manifest::Manifest;
 use super::metrics::{self, Metric};
 use crate::sim::arguments::MotionArguments;
 use crate::sim::scheme::{SchemeChoice, SchemeName};
 use joint_file::named::{self, Loaded};
+use report::digest::sha256;
 use report::failure::{Failure, Outcome};
 use report::write::write_text;
 use tasks::{MAX_TASKS, Task, TaskFolder, TaskList};

@@ -5,26 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Packages of the cluster.
-const PACKAGES: [&str; 2] = ["numpy==2.4.6", "distributed==2026.8.0"];
+use host_tests::packages::{self, succeeded};
 
-fn succeeded(command: &mut Command) {
-    let status = command.status().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    assert!(status.success(), "{command:?}: {status}");
-}
-
-/// Python with the packages and the module of this build.
+/// Python with the packages of `cluster.txt` and the module of this build.
 fn python() -> PathBuf {
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cluster");
-    let python = place.join("bin/python");
-    if !place.join("ready").exists() {
-        succeeded(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&place));
-        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-        succeeded(Command::new(&python).args(pip).args(PACKAGES));
-        fs::write(place.join("ready"), "").expect("room");
-    }
-    let packages = fs::read_dir(place.join("lib")).expect("a folder").next().expect("a Python").expect("a folder");
-    let module = packages.path().join("site-packages/lostmotion");
+    let all = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let python = packages::python(all, &Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"), "cluster");
+    let inside = fs::read_dir(all.join("cluster/lib")).expect("a folder").next().expect("a Python").expect("a folder");
+    let module = inside.path().join("site-packages/lostmotion");
     let _ = fs::remove_dir_all(&module);
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("python/lostmotion");
     succeeded(Command::new("cp").arg("-rL").arg(sources).arg(&module));
@@ -41,7 +29,11 @@ fn python() -> PathBuf {
 fn run(engine: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cluster.py");
-    succeeded(Command::new(python()).arg(script).arg(engine).arg(folder.path()).env("PYTHONDONTWRITEBYTECODE", "1"));
+    let mut command = Command::new(python());
+    command.arg(script).arg(engine).arg(folder.path()).env("PYTHONDONTWRITEBYTECODE", "1");
+    // Its figures appear while it runs.
+    let status = command.status().expect("a Python");
+    assert!(status.success(), "{engine}: {status}");
 }
 
 #[test]

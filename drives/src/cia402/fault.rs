@@ -50,13 +50,15 @@ pub const fn register(code: u16) -> u8 {
 const KEPT: usize = 4;
 
 /// Errors since power-up, the latest first.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct History {
     codes: [u16; KEPT],
     count: u8,
 }
 
 impl History {
+    pub const EMPTY: Self = Self { codes: [0; KEPT], count: 0 };
+
     pub fn push(&mut self, code: u16) {
         self.codes.rotate_right(1);
         self.codes[0] = code;
@@ -74,6 +76,6 @@ impl History {
     }
 
     pub fn clear(&mut self) {
-        *self = Self::default();
+        *self = Self::EMPTY;
     }
 }

@@ -118,36 +118,53 @@ pub struct Server {
 impl Server {
     /// Drive with a node identifier, 1 to 127; others give the nearest.
     pub fn new(node: u8) -> Self {
-        let node = node.clamp(1, 127);
-        let mut values = [0; COUNT];
-        values.iter_mut().zip(&ENTRIES).for_each(|(value, entry)| *value = entry.initial(node));
-        Self {
-            node,
-            rated_torque: None,
-            now: 0,
-            nmt: Nmt::Initialising,
-            initialised_from: 0,
-            values,
-            state: State::NotReadyToSwitchOn,
-            control: 0,
-            goal: Turns::ZERO,
-            has_target: false,
-            is_changed: false,
-            enabled_at: 0,
-            on_target: 0,
-            error: 0,
-            cause: None,
-            history: fault::History::default(),
-            emergencies: Vec::new(),
-            transfer: sdo::Transfer::Idle,
-            receive: Default::default(),
-            transmit: Default::default(),
-            heartbeat: Monitor::default(),
-            guarding: Monitor::default(),
-            is_alone: false,
-            toggle: false,
-            heartbeat_sent: 0,
-        }
+        let mut server = Self { node: node.clamp(1, 127), ..Self::BLANK };
+        server.set_initial_values(|_| true);
+        server
+    }
+
+    /// State at power-up, without the node and the values of the objects.
+    const BLANK: Self = Self {
+        node: 0,
+        rated_torque: None,
+        now: 0,
+        nmt: Nmt::Initialising,
+        initialised_from: 0,
+        values: [0; COUNT],
+        state: State::NotReadyToSwitchOn,
+        control: 0,
+        goal: Turns::ZERO,
+        has_target: false,
+        is_changed: false,
+        enabled_at: 0,
+        on_target: 0,
+        error: 0,
+        cause: None,
+        history: fault::History::EMPTY,
+        emergencies: Vec::new(),
+        transfer: sdo::Transfer::Idle,
+        receive: [pdo::Receive::NONE; PDO_COUNT],
+        transmit: [pdo::Transmit::NONE; PDO_COUNT],
+        heartbeat: Monitor::NONE,
+        guarding: Monitor::NONE,
+        is_alone: false,
+        toggle: false,
+        heartbeat_sent: 0,
+    };
+
+    /// Restarts the node in its place: the tick has no stack for a second server.
+    #[inline(never)]
+    fn restart(&mut self) {
+        let Self { node, rated_torque, now, .. } = *self;
+        *self = Self { node, rated_torque, now, initialised_from: now, ..Self::BLANK };
+        self.set_initial_values(|_| true);
+    }
+
+    /// Gives the objects for which a condition holds their values at power-up.
+    fn set_initial_values(&mut self, is_reset: impl Fn(&dictionary::Entry) -> bool) {
+        let node = self.node;
+        let reset = self.values.iter_mut().zip(&ENTRIES).filter(|(_, entry)| is_reset(entry));
+        reset.for_each(|(value, entry)| *value = entry.initial(node));
     }
 
     /// States the rated torque of the motor [N m]. Without it, 1000 thousandths are the motor's largest torque.
@@ -237,7 +254,7 @@ impl CanServer for Server {
             0 => self.manage(data, drive),
             0x80 if is_operational => {
                 self.apply_pdos(None, drive);
-                self.send_pdos(pdo::Trigger::Sync, None, drive, send);
+                self.due_pdos(pdo::Trigger::Sync, None, drive).for_each(&mut *send);
             }
             id if id == 0x600 + u16::from(self.node) => self.answer_sdo(frame, drive, send),
             id if master > 0 && id == 0x700 + master => {
@@ -260,7 +277,7 @@ impl CanServer for Server {
         self.follow(drive);
         self.send_emergencies(send);
         if self.nmt == Nmt::Operational {
-            self.send_pdos(pdo::Trigger::Time, None, drive, send);
+            self.due_pdos(pdo::Trigger::Time, None, drive).for_each(&mut *send);
         }
     }
 

@@ -220,7 +220,7 @@ impl Server {
             ),
             Mode::ProfileVelocity => (now.is_trajectory_done, is_still),
             Mode::CyclicPosition | Mode::CyclicVelocity | Mode::CyclicTorque => (false, true),
-            Mode::None => (false, false),
+            _ => (false, false),
         };
         let bits = [
             (now.sensors.bus_voltage >= drive.settings().min_voltage, status::VOLTAGE_ENABLED),

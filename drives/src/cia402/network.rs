@@ -1,7 +1,7 @@
 //! Network of the server: management, heartbeat, guarding, and monitoring of the master.
 
-use super::dictionary::{self as object, Address, Direction, ENTRIES, PDO_COUNT};
-use super::nmt::{Nmt, NmtCommand};
+use super::dictionary::{self as object, Address, Direction, PDO_COUNT};
+use super::nmt::{Monitor, Nmt, NmtCommand};
 use super::state::State;
 use super::{Server, fault, pdo, sdo};
 use crate::drive::Drive;
@@ -25,12 +25,7 @@ impl Server {
             NmtCommand::EnterPreOperational => self.set_nmt(Nmt::PreOperational),
             NmtCommand::ResetNode => {
                 drive.restart();
-                *self = Self {
-                    rated_torque: self.rated_torque,
-                    now: self.now,
-                    initialised_from: self.now,
-                    ..Self::new(self.node)
-                };
+                self.restart();
             }
             NmtCommand::ResetCommunication => self.reset_communication(),
         }
@@ -38,20 +33,16 @@ impl Server {
 
     pub(super) fn set_nmt(&mut self, nmt: Nmt) {
         if nmt == Nmt::Operational && self.nmt != nmt {
-            self.receive = Default::default();
-            self.transmit = Default::default();
+            self.receive = [pdo::Receive::NONE; PDO_COUNT];
+            self.transmit = [pdo::Transmit::NONE; PDO_COUNT];
         }
         self.nmt = nmt;
     }
 
     /// Restarts the communication: parameters below 2000h are those after power-up.
     pub(super) fn reset_communication(&mut self) {
-        for (value, entry) in self.values.iter_mut().zip(&ENTRIES) {
-            if entry.address.index < 0x2000 {
-                *value = entry.initial(self.node);
-            }
-        }
-        (self.heartbeat, self.guarding) = Default::default();
+        self.set_initial_values(|entry| entry.address.index < 0x2000);
+        (self.heartbeat, self.guarding) = (Monitor::NONE, Monitor::NONE);
         self.return_from_loss(true);
         self.transfer = sdo::Transfer::Idle;
         self.nmt = Nmt::Initialising;
@@ -69,7 +60,7 @@ impl Server {
         if self.nmt == Nmt::Operational {
             let number = (0..PDO_COUNT).find(|number| self.pdo_id(Direction::Transmit, *number) == Some(id));
             if number.is_some() {
-                self.send_pdos(pdo::Trigger::Remote, number, drive, send);
+                self.due_pdos(pdo::Trigger::Remote, number, drive).for_each(send);
             }
         }
     }

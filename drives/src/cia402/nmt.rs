@@ -63,13 +63,16 @@ impl NmtCommand {
 }
 
 /// Monitoring of a master that sends heartbeats or guarding requests. The first one starts it.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Monitor {
     seen: Option<u64>,
     is_lost: bool,
 }
 
 impl Monitor {
+    /// Without a sign of life yet.
+    pub const NONE: Self = Self { seen: None, is_lost: false };
+
     /// Notes a sign of life at a time [us]; returns true if the master was lost.
     pub fn feed(&mut self, now: u64) -> bool {
         self.seen = Some(now);

@@ -4,6 +4,7 @@ use core::f32::consts::TAU;
 
 use super::Server;
 use super::dictionary::{self as object, Access, Address, ENTRIES, Entry, Initial, Kind, PDO_COUNT, PDO_IS_INVALID};
+use super::nmt::Monitor;
 use super::pdo;
 use super::sdo::{Abort, Objects, Value};
 use super::state::State;
@@ -167,7 +168,7 @@ impl Server {
             object::CALIBRATION => return self.calibrate(drive),
             object::QUICK_STOP_OPTION if !matches!(raw, 0..=2 | 5 | 6) => return Err(Abort::Range),
             object::CONSUMER_HEARTBEAT => {
-                self.heartbeat = Default::default();
+                self.heartbeat = Monitor::NONE;
                 self.return_from_loss(true);
             }
             Address { index: 0x1400..=0x1403 | 0x1800..=0x1803, sub } => self.check_parameter(address, sub, raw)?,
@@ -254,7 +255,10 @@ impl Server {
     /// Objects of a mapping.
     pub(super) fn mappings(&self, index: u16) -> heapless::Vec<u32, 8> {
         let count = self.stored(Address::new(index, 0)).min(8) as u8;
-        (1..=count).map(|sub| self.stored(Address::new(index, sub))).collect()
+        let mut mappings = heapless::Vec::new();
+        // To collect them could panic.
+        (1..=count).for_each(|sub| mappings.push(self.stored(Address::new(index, sub))).unwrap_or(()));
+        mappings
     }
 }
 

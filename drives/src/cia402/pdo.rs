@@ -30,7 +30,7 @@ pub fn size_of_mapping(mapping: u32) -> usize {
 }
 
 /// RPDO.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Receive {
     /// Data that waits for a SYNC.
     pub pending: Option<Data>,
@@ -38,8 +38,13 @@ pub(super) struct Receive {
     pub seen: Option<u64>,
 }
 
+impl Receive {
+    /// Before the first frame.
+    pub const NONE: Self = Self { pending: None, seen: None };
+}
+
 /// TPDO.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Transmit {
     /// Data of the last frame.
     pub last: Data,
@@ -47,6 +52,11 @@ pub(super) struct Transmit {
     pub sent: u64,
     /// SYNCs since the last frame.
     pub syncs: u8,
+}
+
+impl Transmit {
+    /// Before the first frame.
+    pub const NONE: Self = Self { last: Data::new(), sent: 0, syncs: 0 };
 }
 
 /// Reason to send a TPDO.

@@ -4,7 +4,7 @@ use super::dictionary::{self as object, Address, Direction, PDO_COUNT, PDO_IS_IN
 use super::state::State;
 use super::{Server, fault, pdo};
 use crate::drive::Drive;
-use crate::frame::{Frame, Send, standard};
+use crate::frame::{Frame, standard};
 use heapless::Vec;
 
 impl Server {
@@ -62,27 +62,37 @@ impl Server {
         }
     }
 
-    pub(super) fn send_pdos(&mut self, trigger: pdo::Trigger, only: Option<usize>, drive: &Drive, send: Send<'_>) {
-        for number in (0..PDO_COUNT).filter(|number| only.is_none_or(|only| only == *number)) {
-            let Some(id) = self.pdo_id(Direction::Transmit, number) else { continue };
-            let timing = pdo::Timing {
-                transmission: self.transmission(Direction::Transmit, number),
-                inhibit: self.stored(Address::new(Direction::Transmit.parameters(number), 3)),
-                event: self.stored(Address::new(Direction::Transmit.parameters(number), 5)),
-            };
-            let mut data = pdo::Data::new();
-            for mapping in self.mappings(Direction::Transmit.mapping(number)) {
-                let raw = self.read(object::mapped_address(mapping), drive).unwrap_or(0);
-                pdo::pack(&mut data, raw, pdo::size_of_mapping(mapping));
-            }
-            let now = self.now;
-            let Some(pdo) = self.transmit.get_mut(number) else { continue };
-            if pdo.is_due(trigger, timing, &data, now)
-                && let Some(frame) = Frame::classic(standard(id), &data)
-            {
-                pdo.note(data, now);
-                send(frame);
-            }
+    /// Frames of the TPDOs that are due, of one or of all.
+    pub(super) fn due_pdos(
+        &mut self,
+        trigger: pdo::Trigger,
+        only: Option<usize>,
+        drive: &Drive,
+    ) -> impl Iterator<Item = Frame> {
+        let numbers = (0..PDO_COUNT).filter(move |number| only.is_none_or(|only| only == *number));
+        numbers.filter_map(move |number| self.due_pdo(trigger, number, drive))
+    }
+
+    /// Frame of a TPDO that is due.
+    fn due_pdo(&mut self, trigger: pdo::Trigger, number: usize, drive: &Drive) -> Option<Frame> {
+        let id = self.pdo_id(Direction::Transmit, number)?;
+        let timing = pdo::Timing {
+            transmission: self.transmission(Direction::Transmit, number),
+            inhibit: self.stored(Address::new(Direction::Transmit.parameters(number), 3)),
+            event: self.stored(Address::new(Direction::Transmit.parameters(number), 5)),
+        };
+        let mut data = pdo::Data::new();
+        for mapping in self.mappings(Direction::Transmit.mapping(number)) {
+            let raw = self.read(object::mapped_address(mapping), drive).unwrap_or(0);
+            pdo::pack(&mut data, raw, pdo::size_of_mapping(mapping));
         }
+        let now = self.now;
+        let pdo = self.transmit.get_mut(number)?;
+        if !pdo.is_due(trigger, timing, &data, now) {
+            return None;
+        }
+        let frame = Frame::classic(standard(id), &data)?;
+        pdo.note(data, now);
+        Some(frame)
     }
 }

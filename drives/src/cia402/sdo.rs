@@ -228,7 +228,7 @@ pub(super) enum Transfer {
 
 impl Transfer {
     /// Answer to a frame of the client; `None` after the client's abort.
-    pub fn answer(&mut self, bytes: &[u8; 8], objects: &mut dyn Objects) -> Option<Sdo> {
+    pub fn answer(&mut self, bytes: &[u8; 8], objects: &mut impl Objects) -> Option<Sdo> {
         let address = match self {
             Self::Upload { address, .. } | Self::Download { address, .. } => *address,
             Self::Idle => address_of(bytes),
@@ -256,7 +256,7 @@ impl Transfer {
         }))
     }
 
-    fn begin_upload(&mut self, address: Address, objects: &dyn Objects) -> Result<Sdo, Abort> {
+    fn begin_upload(&mut self, address: Address, objects: &impl Objects) -> Result<Sdo, Abort> {
         *self = Self::Idle;
         Ok(match objects.read(address)? {
             Value::Raw(raw, size) => Sdo::expedited(address, raw, size),
@@ -282,7 +282,7 @@ impl Transfer {
         Ok(Sdo::Segment { toggle: wanted, data, is_last })
     }
 
-    fn begin_download(&mut self, address: Address, size: Option<u32>, objects: &dyn Objects) -> Result<Sdo, Abort> {
+    fn begin_download(&mut self, address: Address, size: Option<u32>, objects: &impl Objects) -> Result<Sdo, Abort> {
         *self = Self::Idle;
         // An object that does not exist is refused at once; all others when they are written.
         match objects.read(address) {
@@ -300,7 +300,7 @@ impl Transfer {
         sent: bool,
         segment: &Segment,
         is_last: bool,
-        objects: &mut dyn Objects,
+        objects: &mut impl Objects,
     ) -> Result<Sdo, Abort> {
         let Self::Download { address, data, toggle } = self else { return Err(Abort::Command) };
         if sent != *toggle {

@@ -1,40 +1,40 @@
 //! State machine of the profile: states, commands of the control word, status word.
 
-/// State of the drive.
+/// State of the drive, with its bits in the status word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u16)]
 pub enum State {
     /// Initialisation, or calibration.
-    NotReadyToSwitchOn,
+    NotReadyToSwitchOn = 0x00,
     /// No torque; waits for a shutdown command.
-    SwitchOnDisabled,
+    SwitchOnDisabled = 0x40,
     /// No torque.
-    ReadyToSwitchOn,
+    ReadyToSwitchOn = 0x21,
     /// Power stage ready, no torque.
-    SwitchedOn,
+    SwitchedOn = 0x23,
     /// Control by the mode of operation.
-    OperationEnabled,
+    OperationEnabled = 0x27,
     /// Ramp to a standstill, and standstill.
-    QuickStopActive,
+    QuickStopActive = 0x07,
     /// Reaction to a fault.
-    FaultReactionActive,
+    FaultReactionActive = 0x0F,
     /// No torque until a fault reset.
-    Fault,
+    Fault = 0x08,
 }
 
 /// Command in the low four bits of the control word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u16)]
 pub enum Command {
     /// Takes the torque off.
-    DisableVoltage = 0,
+    DisableVoltage,
     /// Stops on a ramp.
-    QuickStop = 2,
+    QuickStop,
     /// Leads to ready to switch on.
-    Shutdown = 6,
+    Shutdown,
     /// Leads to switched on.
-    SwitchOn = 7,
+    SwitchOn,
     /// Leads to operation enabled.
-    EnableOperation = 15,
+    EnableOperation,
 }
 
 /// Bits of the control word.
@@ -77,18 +77,11 @@ impl State {
         Self::Fault,
     ];
 
-    /// Bits of the status word that tell the state: mask and value.
+    /// Bits of the status word that tell the state: mask and value. Bit 5, no quick stop, tells some states only.
     pub const fn bits(self) -> (u16, u16) {
-        match self {
-            Self::NotReadyToSwitchOn => (0x4F, 0x00),
-            Self::SwitchOnDisabled => (0x4F, 0x40),
-            Self::ReadyToSwitchOn => (0x6F, 0x21),
-            Self::SwitchedOn => (0x6F, 0x23),
-            Self::OperationEnabled => (0x6F, 0x27),
-            Self::QuickStopActive => (0x6F, 0x07),
-            Self::FaultReactionActive => (0x4F, 0x0F),
-            Self::Fault => (0x4F, 0x08),
-        }
+        let with_bit_5 =
+            matches!(self, Self::ReadyToSwitchOn | Self::SwitchedOn | Self::OperationEnabled | Self::QuickStopActive);
+        (if with_bit_5 { 0x6F } else { 0x4F }, self as u16)
     }
 
     /// State in a status word.

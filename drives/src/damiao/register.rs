@@ -1,14 +1,29 @@
 //! Registers of a drive: address, name, type and range.
 
+use core::ops::Bound::{self, Excluded, Included};
+use core::ops::RangeBounds;
+
 pub use crate::value::Value;
+
+/// Range of values: lower and upper bound.
+type Range<T> = (Bound<T>, Bound<T>);
+
+/// Finite numbers above zero.
+const POSITIVE: Range<f32> = (Excluded(0.0), Included(f32::MAX));
+/// Finite numbers below zero.
+const NEGATIVE: Range<f32> = (Included(f32::MIN), Excluded(0.0));
+/// Zero and finite numbers above.
+const NOT_NEGATIVE: Range<f32> = (Included(0.0), Included(f32::MAX));
+/// Identifiers of 11 bits.
+const IDENTIFIER: Range<u32> = (Included(0), Included(0x7FF));
 
 /// Type of a register, with the range of values that it accepts; `None` for one that can only be read.
 #[derive(Debug, Clone, Copy)]
 pub enum Form {
     /// f32.
-    Float(Option<fn(f32) -> bool>),
+    Float(Option<Range<f32>>),
     /// u32.
-    Whole(Option<fn(u32) -> bool>),
+    Whole(Option<Range<u32>>),
 }
 
 macro_rules! registers {
@@ -57,27 +72,27 @@ macro_rules! registers {
 
 registers! {
     /// Bus voltage below which the drive has a fault [V].
-    UnderVoltage = 0, "UV_Value", Float(Some(|value| value > 10.0 && value <= f32::MAX));
+    UnderVoltage = 0, "UV_Value", Float(Some((Excluded(10.0), Included(f32::MAX))));
     /// Torque coefficient by the user [N m/A]; 0 for the one that was identified.
-    TorqueCoefficient = 1, "KT_Value", Float(Some(is_not_negative));
+    TorqueCoefficient = 1, "KT_Value", Float(Some(NOT_NEGATIVE));
     /// Temperature of the winding that is a fault [deg C].
-    OverTemperature = 2, "OT_Value", Float(Some(|value| (80.0..200.0).contains(&value)));
+    OverTemperature = 2, "OT_Value", Float(Some((Included(80.0), Excluded(200.0))));
     /// Current that is a fault, as a share of the largest [-].
-    OverCurrent = 3, "OC_Value", Float(Some(|value| value > 0.0 && value < 1.0));
+    OverCurrent = 3, "OC_Value", Float(Some((Excluded(0.0), Excluded(1.0))));
     /// Acceleration of profiles [rad/s^2].
-    Acceleration = 4, "ACC", Float(Some(is_positive));
+    Acceleration = 4, "ACC", Float(Some(POSITIVE));
     /// Deceleration of profiles, negative [rad/s^2].
-    Deceleration = 5, "DEC", Float(Some(|value| is_positive(-value)));
+    Deceleration = 5, "DEC", Float(Some(NEGATIVE));
     /// Largest speed [rad/s].
-    MaxSpeed = 6, "MAX_SPD", Float(Some(is_positive));
+    MaxSpeed = 6, "MAX_SPD", Float(Some(POSITIVE));
     /// Identifier of feedback frames.
-    FeedbackId = 7, "MST_ID", Whole(Some(is_identifier));
+    FeedbackId = 7, "MST_ID", Whole(Some(IDENTIFIER));
     /// Identifier of the drive.
-    Id = 8, "ESC_ID", Whole(Some(is_identifier));
+    Id = 8, "ESC_ID", Whole(Some(IDENTIFIER));
     /// Time without a command after which the drive has a fault [50 us]; 0 for none.
-    Timeout = 9, "TIMEOUT", Whole(Some(|_| true));
+    Timeout = 9, "TIMEOUT", Whole(Some((Included(0), Included(u32::MAX))));
     /// Code of the control mode.
-    ControlMode = 10, "CTRL_MODE", Whole(Some(|value| (1..=4).contains(&value)));
+    ControlMode = 10, "CTRL_MODE", Whole(Some((Included(1), Included(4))));
     /// Viscous damping of the motor.
     Damping = 11, "Damp", Float(None);
     /// Inertia of the motor [kg m^2].
@@ -99,35 +114,35 @@ registers! {
     /// Ratio of the gear [-].
     GearRatio = 20, "Gr", Float(None);
     /// Range of positions [rad].
-    PositionRange = 21, "PMAX", Float(Some(is_positive));
+    PositionRange = 21, "PMAX", Float(Some(POSITIVE));
     /// Range of velocities [rad/s].
-    VelocityRange = 22, "VMAX", Float(Some(is_positive));
+    VelocityRange = 22, "VMAX", Float(Some(POSITIVE));
     /// Range of torques [N m].
-    TorqueRange = 23, "TMAX", Float(Some(is_positive));
+    TorqueRange = 23, "TMAX", Float(Some(POSITIVE));
     /// Bandwidth of the current loop.
-    CurrentBandwidth = 24, "I_BW", Float(Some(|value| (100.0..=10_000.0).contains(&value)));
+    CurrentBandwidth = 24, "I_BW", Float(Some((Included(100.0), Included(10_000.0))));
     /// Gain of the speed loop.
-    VelocityGain = 25, "KP_ASR", Float(Some(is_not_negative));
+    VelocityGain = 25, "KP_ASR", Float(Some(NOT_NEGATIVE));
     /// Integral gain of the speed loop.
-    VelocityIntegral = 26, "KI_ASR", Float(Some(is_not_negative));
+    VelocityIntegral = 26, "KI_ASR", Float(Some(NOT_NEGATIVE));
     /// Gain of the position loop [1/s].
-    PositionGain = 27, "KP_APR", Float(Some(is_not_negative));
+    PositionGain = 27, "KP_APR", Float(Some(NOT_NEGATIVE));
     /// Integral gain of the position loop.
-    PositionIntegral = 28, "KI_APR", Float(Some(is_not_negative));
+    PositionIntegral = 28, "KI_APR", Float(Some(NOT_NEGATIVE));
     /// Bus voltage above which the drive has a fault [V].
-    OverVoltage = 29, "OV_Value", Float(Some(is_positive));
+    OverVoltage = 29, "OV_Value", Float(Some(POSITIVE));
     /// Efficiency of the gear [-].
-    GearEfficiency = 30, "GREF", Float(Some(|value| value > 0.0 && value <= 1.0));
+    GearEfficiency = 30, "GREF", Float(Some((Excluded(0.0), Included(1.0))));
     /// Damping factor from which the speed loop is tuned [-].
-    DampingFactor = 31, "Deta", Float(Some(|value| (1.0..=30.0).contains(&value)));
+    DampingFactor = 31, "Deta", Float(Some((Included(1.0), Included(30.0))));
     /// Bandwidth of the speed filter.
-    FilterBandwidth = 32, "V_BW", Float(Some(|value| value > 0.0 && value < 500.0));
+    FilterBandwidth = 32, "V_BW", Float(Some((Excluded(0.0), Excluded(500.0))));
     /// Enhancement of the current loop.
-    CurrentEnhancement = 33, "IQ_c1", Float(Some(|value| (100.0..=10_000.0).contains(&value)));
+    CurrentEnhancement = 33, "IQ_c1", Float(Some((Included(100.0), Included(10_000.0))));
     /// Enhancement of the speed loop.
-    VelocityEnhancement = 34, "VL_c1", Float(Some(|value| value > 0.0 && value <= 10_000.0));
+    VelocityEnhancement = 34, "VL_c1", Float(Some((Excluded(0.0), Included(10_000.0))));
     /// Code of the bit rate.
-    BitRate = 35, "can_br", Whole(Some(|value| value <= 4));
+    BitRate = 35, "can_br", Whole(Some((Included(0), Included(4))));
     /// Second part of the software's version.
     SubVersion = 36, "sub_ver", Whole(None);
     /// Offset of the current in phase u.
@@ -178,8 +193,8 @@ impl Register {
     /// True if the register can be written and the value is in its range.
     pub fn accepts(self, value: Value) -> bool {
         match (self.form(), value) {
-            (Float(Some(accepts)), Value::F32(value)) => accepts(value),
-            (Whole(Some(accepts)), Value::U32(value)) => accepts(value),
+            (Float(Some(range)), Value::F32(value)) => range.contains(&value),
+            (Whole(Some(range)), Value::U32(value)) => range.contains(&value),
             _ => false,
         }
     }
@@ -188,19 +203,4 @@ impl Register {
     pub fn is_writable(self) -> bool {
         matches!(self.form(), Float(Some(_)) | Whole(Some(_)))
     }
-}
-
-/// True for a finite number above zero.
-fn is_positive(value: f32) -> bool {
-    value > 0.0 && value <= f32::MAX
-}
-
-/// True for zero and a finite number above.
-fn is_not_negative(value: f32) -> bool {
-    (0.0..=f32::MAX).contains(&value)
-}
-
-/// True for an identifier of 11 bits.
-fn is_identifier(value: u32) -> bool {
-    value <= 0x7FF
 }

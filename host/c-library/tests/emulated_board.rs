@@ -8,9 +8,10 @@ use c_library::controller::{self, Mode};
 use c_library::costs::{self, Costs};
 use c_library::library::{self, Target};
 use c_library::package;
-use c_library::programs::{self, MACHINES, Workbench, value_after};
+use c_library::programs::{self, MACHINES, Machine, Workbench, value_after};
 use c_library::run;
 use c_library::tables::{self, joint_at};
+use host_tests::extent::is_long;
 use joint_file::JointFile;
 use model_core::gears::Tables;
 use model_core::gears::design::design as gears_design;
@@ -202,12 +203,12 @@ fn library_links_without_a_c_library() {
     }
 }
 
-/// Two builds in different folders give equal bytes; with `LONG_TESTS` for every target.
+/// Two builds in different folders give equal bytes: for the Cortex-M4F, with `LONG_TESTS` for every target.
 #[test]
 #[ignore = "builds the library once more from nothing: run by `cargo joint hil --check`"]
 fn builds_are_reproducible() {
     let all = [Target::M4f, Target::Host, Target::M33, Target::M7];
-    for target in all.into_iter().take(if std::env::var_os("LONG_TESTS").is_some() { 4 } else { 2 }) {
+    for target in all.into_iter().take(if is_long() { 4 } else { 1 }) {
         let first = library::build(target, "library", &say).expect("a library");
         // Built from scratch in another folder.
         let folder = tempfile::tempdir().expect("a folder");
@@ -386,6 +387,7 @@ fn rust_controller(joint: &JointFile, words: &[u64], mode: Mode) -> (Figures, u6
     (Figures::of(&run, 2.0), digest.expect("a run"))
 }
 
+/// On every board at 10 kHz and on the Cortex-M4F at 20 kHz; with `LONG_TESTS` on every board at both rates.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn controller_in_c_removes_the_lost_motion() {
@@ -405,7 +407,8 @@ fn controller_in_c_removes_the_lost_motion() {
         let include = format!("-I{}", example("").display());
         let sources = [example("on_board.c"), example("controller.c")];
         let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
-        for machine in MACHINES {
+        let is_tried = |machine: &Machine| rate == 10_000 || machine.target == Target::M4f || is_long();
+        for machine in MACHINES.into_iter().filter(is_tried) {
             let library = libraries.iter().find(|library| library.target == machine.target).expect("a library");
             let bench = Workbench::new(library, &tables).expect("room");
             let clock = match machine.name {

@@ -13,10 +13,15 @@ use report::workspace::workspace;
 /// Packages to build the emulator library of the board model.
 const PACKAGES: [&str; 3] = ["cmake", "libclang-dev", "build-essential"];
 
-/// Runs the short form of the board model's checks; it prints a line per check.
-pub fn check(progress: &Progress) -> Outcome<()> {
+/// Installs what the board model is built with.
+pub fn prepare(progress: &Progress) -> Outcome<()> {
     packages::ensure(&PACKAGES, "to build the model of the boards", &|line| progress.print_message(line))?;
     progress.clear();
+    Ok(())
+}
+
+/// Runs the short form of the board model's checks; it prints a line per check.
+pub fn check() -> Outcome<()> {
     let status = tool::cargo()
         .args(["run", "--quiet", "--release", "--manifest-path", "board-model/Cargo.toml", "--", "check"])
         .current_dir(workspace())

@@ -97,8 +97,13 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         output::print(&format!("ok       clippy for {}\n", board.name()))?;
     }
     proofs(&toolchain, progress)?;
-    emulator_tests()?;
-    board_model::check(progress)
+    board_model::prepare(progress)?;
+    // Each keeps about one core busy.
+    std::thread::scope(|scope| {
+        let model = scope.spawn(board_model::check);
+        let tests = emulator_tests();
+        tests.and(model.join().unwrap_or_else(|_| Err(Failure::new("the check on the model of the boards panicked"))))
+    })
 }
 
 /// Equal bits, instructions and worst case, of this program against the emulated board.

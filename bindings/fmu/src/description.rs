@@ -57,8 +57,9 @@ pub fn model_description(model: &Model, token: &str) -> String {
              <CoSimulation modelIdentifier=\"{identifier}\" canHandleVariableCommunicationStepSize=\"true\" \
              canBeInstantiatedOnlyOncePerProcess=\"false\" canGetAndSetFMUState=\"true\" canSerializeFMUState=\"false\" \
              fixedInternalStepSize=\"{period:?}\" hasEventMode=\"false\"/>\n\
-             {units}{categories}\n{experiment}\n<ModelVariables>\n{variables}</ModelVariables>\n\
+             {units}{}{categories}\n{experiment}\n<ModelVariables>\n{variables}</ModelVariables>\n\
              <ModelStructure>\n{}{}</ModelStructure>\n</fmiModelDescription>\n",
+            types(model),
             outputs(model, |index| format!("<Output valueReference=\"{index}\" dependencies=\"\"/>\n")),
             outputs(model, |index| format!("<InitialUnknown valueReference=\"{index}\" dependencies=\"\"/>\n")),
         ),
@@ -71,7 +72,8 @@ fn outputs(model: &Model, element: impl Fn(usize) -> String) -> String {
     all.filter(|(_, it)| it.role == Role::Output).map(|(index, _)| element(index)).collect()
 }
 
-fn units(model: &Model) -> String {
+/// Units of the variables, each once.
+fn used_units(model: &Model) -> Vec<Unit> {
     let mut used: Vec<Unit> = vec![];
     for variable in &model.variables {
         if let Kind::Real(unit) = variable.kind
@@ -80,13 +82,23 @@ fn units(model: &Model) -> String {
             used.push(unit);
         }
     }
+    used
+}
+
+/// A type for each unit, for FMI 3: some importers accept no unit at a variable.
+fn types(model: &Model) -> String {
+    let line = |unit: &Unit| format!("<Float64Type name=\"{0}\" unit=\"{0}\"/>\n", unit.0);
+    format!("<TypeDefinitions>\n{}</TypeDefinitions>\n", used_units(model).iter().map(line).collect::<String>())
+}
+
+fn units(model: &Model) -> String {
     let base = |unit: &Unit| {
         let exponents = ["kg", "m", "s", "rad"].iter().zip(unit.1);
         let present = exponents.filter(|(_, exponent)| *exponent != 0);
         present.map(|(name, exponent)| format!(" {name}=\"{exponent}\"")).collect::<String>()
     };
     let line = |unit: &Unit| format!("<Unit name=\"{}\"><BaseUnit{}/></Unit>\n", unit.0, base(unit));
-    format!("<UnitDefinitions>\n{}</UnitDefinitions>\n", used.iter().map(line).collect::<String>())
+    format!("<UnitDefinitions>\n{}</UnitDefinitions>\n", used_units(model).iter().map(line).collect::<String>())
 }
 
 /// Element of a variable, with its index as value reference.
@@ -103,7 +115,7 @@ fn variable(fmi: Fmi, index: usize, of: &Variable) -> String {
         Kind::Real(_) | Kind::Integer => format!(" start=\"{start}\""),
     });
     let unit = match of.kind {
-        Kind::Real(unit) => format!(" unit=\"{}\"", unit.0),
+        Kind::Real(unit) => format!(" {}=\"{}\"", if fmi == Fmi::Two { "unit" } else { "declaredType" }, unit.0),
         Kind::Integer | Kind::Boolean => String::new(),
     };
     let shared = format!(

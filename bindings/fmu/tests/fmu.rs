@@ -102,8 +102,12 @@ fn archive_holds_what_its_description_names() {
                 .collect();
             assert_eq!(variables.len(), model.variables.len());
             assert!(variables.iter().all(|one| !value(one, "description").is_empty()));
-            for real in ["Real", "Float64"].iter().flat_map(|name| elements(xml, name)) {
+            for real in ["Real", "Float64Type"].iter().flat_map(|name| elements(xml, name)) {
                 assert!(units.iter().any(|unit| unit == value(&real, "unit")), "{real:?}");
+            }
+            let types = elements(xml, "Float64Type");
+            for real in elements(xml, "Float64") {
+                assert!(types.iter().any(|it| value(it, "name") == value(&real, "declaredType")), "{real:?}");
             }
             assert_structure(fmi, xml, &model);
             for name in ["rust/Cargo.toml", "rust/bindings/c/src/lib.rs", "CMakeLists.txt"] {
@@ -487,5 +491,55 @@ fn fmpy_reads_the_core_bits() {
         let expected = plant_digest(gears, around, &q1, models[0].ratio, 1);
         assert!(said.contains(&format!("single {expected:016x}\n")), "{said}");
         assert!(said.contains("1000 instances"), "{said}");
+    }
+}
+
+/// fmi-sim, an importer with no code of FMPy's, steps the plant under constant torques; each of its lines has the core's bits.
+#[test]
+#[ignore = "builds fmi-sim from its sources, some minutes: cargo test -p fmu fmi_sim -- --ignored"]
+fn fmi_sim_reads_the_core_bits() {
+    const PERIODS: usize = 3000;
+    let list = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmi-sim.txt");
+    let package = fs::read_to_string(&list).expect("a list");
+    let place = packages::packages(Path::new(env!("CARGO_TARGET_TMPDIR")), "fmi-sim", &list, "bin/fmi-sim", |place| {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut install = Command::new(cargo);
+        install.args(["install", "--quiet", "--locked", package.trim(), "--root"]).arg(place);
+        succeeded(install.arg("--target-dir").arg(place.join("build")));
+        fs::remove_dir_all(place.join("build")).expect("a folder of ours");
+    });
+    let (q1, folder) = (joint("q1"), tempfile::tempdir().expect("a folder"));
+    let period = 1.0 / f64::from(q1.surroundings.control_rate);
+    for (fmi, version) in [(Fmi::Two, "2"), (Fmi::Three, "3")] {
+        let model = model(fmi, Content::Plant, &q1);
+        let [unit, found] = ["fmu", "csv"].map(|kind| folder.path().join(format!("{version}.{kind}")));
+        let archive = archive::pack(&contents(&model, &LIBRARY).expect("an FMU")).expect("an archive");
+        fs::write(&unit, archive).expect("room");
+        let mut simulate = Command::new(place.join("bin/fmi-sim"));
+        simulate.arg("--model").arg(&unit).arg("--output-file").arg(&found).args(["co-simulation", "--init-values"]);
+        simulate.args(["motor_torque=0.75", "--init-values", "external_torque=-0.5", "--output-interval"]);
+        succeeded(simulate.arg(period.to_string()).arg("-f").arg((PERIODS as f64 * period).to_string()));
+        let found = fs::read_to_string(found).expect("a table");
+        let mut lines = found.lines();
+        let names: Vec<&str> = lines.next().expect("a heading").split(',').skip(1).collect();
+        let wanted: Vec<&str> =
+            model.variables.iter().filter(|it| it.role == Role::Output).map(|it| it.name.as_str()).collect();
+        assert_eq!(names, wanted);
+        let blob = Blob::open(&model.tables.words).expect("tables");
+        let (Gears::Three(gears), around) = blob.plant().expect("a plant") else { panic!("Q1 has three planets") };
+        let mut joint = VirtualJoint::new(gears, around);
+        let meshes = [&q1.parameters.sun_planet, &q1.parameters.ring_planet];
+        let number = |text: &str| match text {
+            "true" => 1.0,
+            "false" => 0.0,
+            _ => text.parse().unwrap_or_else(|_| panic!("{text} is no number")),
+        };
+        for (step, line) in lines.by_ref().take(PERIODS + 1).enumerate() {
+            let values: Vec<f64> = line.split(',').skip(1).map(number).collect();
+            assert_eq!(values, outputs(&joint, model.ratio, meshes), "FMI {version}, step {step}: {line}");
+            joint.advance(0.75, -0.5);
+        }
+        assert!(joint.outputs().carrier_speed != 0.0, "the joint moved");
+        assert_eq!(found.lines().count(), PERIODS + 2, "a heading, the start, a line a period");
     }
 }

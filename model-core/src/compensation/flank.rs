@@ -645,4 +645,44 @@ mod tests {
         let stopped = |opening| flank.stops_the_motor(&tables(), &open(0.2), opening * HALF_GAP);
         assert!(stopped(0.16) && !stopped(0.14));
     }
+
+    /// Path over 0.01 rad in 40 ms with ramps of 10 ms: its steady speed is 1/3 rad/s.
+    fn on_the_way(elapsed: f64) -> FlankControl<f64> {
+        let path = CrossingPath::new([0.0, 0.0], [0.01, 0.0], CrossingTiming { duration: 40e-3, ramp: 10e-3 });
+        FlankControl { path, elapsed, ..control(Stage::Crossing) }
+    }
+
+    #[test]
+    fn path_torque_leads_by_the_reaction_time() {
+        // 3 ms on: 0.0765 mrad and 0.072 rad/s; half a ramp on, where the torque acts: 50 rad/s^2.
+        let behind = LoopState { motor_position: 76.5e-6 - 0.01, motor_speed: 0.072 - 0.1, ..state() };
+        let torque = on_the_way(3e-3).path_torque(&tables(), &behind);
+        assert!((torque - (50.0 + 100.0 * 0.01 + 20.0 * 0.1)).abs() < 1e-9, "{torque}");
+    }
+
+    #[test]
+    fn path_is_shortened_by_a_fifth_of_what_is_left() {
+        let (tables, state, demand) = (tables(), open(0.5), demand(1.0, 3.0));
+        let mut shorter = on_the_way(0.0);
+        let rest = shorter.remaining_crossing(&tables, &state, &demand).duration;
+        for (left, is_shortened) in [(1.24 * rest, false), (1.26 * rest, true)] {
+            shorter = on_the_way(40e-3 - left);
+            let opening = shorter.opening(&state);
+            shorter.execute(&tables, &state, &demand, opening, Action::Shorten);
+            assert_eq!(shorter.path.duration() == rest, is_shortened, "{left} {rest}");
+        }
+    }
+
+    #[test]
+    fn path_ends_at_the_flank_of_the_free_link() {
+        let crossing = CrossingTiming { duration: 38e-3, ramp: 10e-3 };
+        let moving = LoopState { link_speed: 0.5, error: 1e-3, ..state() };
+        let free = ControlDemand { free_acceleration: 10.0, free_jerk: 300.0, ..demand(1.0, 3.0) };
+        let mut flank = control(Stage::Crossing);
+        flank.plan_path(&tables(), &moving, &free, crossing, [0.0, 0.0]);
+        // In 40 ms the link travels 20 + 8 + 3.2 mrad and reaches 0.5 + 0.4 + 0.24 rad/s; it lands at 30 mrad/s.
+        let [place, speed, _] = flank.path.at(crossing.duration);
+        assert!((place - (31.2e-3 - 1e-3 + HALF_GAP)).abs() < 1e-12, "{place}");
+        assert!((speed - (1.14 + 0.03)).abs() < 1e-12, "{speed}");
+    }
 }

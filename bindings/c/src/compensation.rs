@@ -12,7 +12,6 @@ use model_core::gears::Flank;
 use table_blob::Blob;
 
 use crate::estimates::JointContact;
-use crate::fp_mode;
 use crate::object::{Kind, Storage, open, open_shared, start, started_object};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::state::{HEAD, Identity, load, save};

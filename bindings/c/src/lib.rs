@@ -16,7 +16,6 @@
 mod bare;
 mod compensation;
 mod estimates;
-mod fp_mode;
 mod object;
 mod observer;
 mod plant;

@@ -9,7 +9,6 @@ use model_core::observer::{Estimates, MAPPED, MEMORY_BYTES, Memory, Observer, PL
 use table_blob::Blob;
 
 use crate::estimates::{JointEstimates, JointSamples};
-use crate::fp_mode;
 use crate::object::{Kind, Storage, open, open_shared, read, start, usable};
 use crate::state::{HEAD, Identity, load, save};
 use crate::status::JointStatus;

@@ -8,7 +8,6 @@ use model_core::virtual_joint::DrivenLink;
 use table_blob::Blob;
 
 use crate::estimates::{JointContact, JointSamples};
-use crate::fp_mode;
 use crate::object::{Kind, Storage, open, open_shared, start, usable};
 use crate::status::JointStatus;
 

@@ -8,7 +8,6 @@ use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 use table_blob::Blob;
 
 use crate::estimates::JointEstimate;
-use crate::fp_mode;
 use crate::object::{Kind, Storage, open, open_shared, start, usable};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;

@@ -2,7 +2,6 @@
 
 use core::ffi::c_char;
 
-use crate::fp_mode;
 use crate::object::{blob, usable};
 use crate::status::JointStatus;
 use crate::version::has_abi;

@@ -10,7 +10,6 @@ use model_core::wiring::{Wiring, WiringCheck, WiringProgress, WiringRefusal, Wir
 use table_blob::Blob;
 
 use crate::estimates::JointSamples;
-use crate::fp_mode;
 use crate::object::{Kind, Storage, open, open_shared, read, start, usable};
 use crate::status::JointStatus;
 

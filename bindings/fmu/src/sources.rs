@@ -14,7 +14,8 @@ use crate::model::{Content, Fmi, Model};
 use crate::variables::{Kind, ONE, Role};
 
 /// Folders of the crates that the C library consists of, in the workspace.
-const CRATES: [&str; 5] = ["parameters", "model-core", "bindings/tables", "bindings/plant", "bindings/c"];
+const CRATES: [&str; 6] =
+    ["parameters", "model-core", "bindings/tables", "bindings/plant", "bindings/fp-mode", "bindings/c"];
 
 /// Names of the C files to compile.
 pub fn c_files(model: &Model) -> Vec<String> {

@@ -73,7 +73,7 @@ pub fn in_bands(
 ) -> PyResult<()> {
     let band = (checked / joints.max(1)).max(1);
     for begin in (0..periods).step_by(band) {
-        py.detach(|| run([begin, (begin + band).min(periods)]));
+        py.detach(|| fp_mode::standard(|| run([begin, (begin + band).min(periods)])));
         py.check_signals()?;
     }
     Ok(())

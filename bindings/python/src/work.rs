@@ -1,4 +1,5 @@
-//! Long work without Python's lock, beside Ctrl-C.
+//! Long work without Python's lock, beside Ctrl-C, in the standard mode of the floating-point unit. The threads of rayon
+//! begin in that mode, since such work starts them.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
@@ -66,7 +67,7 @@ pub fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> 
     let quiet_work = move || {
         let _running = locked(&RUNNING);
         if begin(&of_worker) {
-            let outcome = work();
+            let outcome = fp_mode::standard(work);
             *locked(&of_worker) = State::Ended;
             let _ = sender.send(outcome);
         }
@@ -97,7 +98,7 @@ pub fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> 
 pub fn short<T: Send>(py: Python<'_>, work: impl FnOnce() -> Outcome<T> + Send) -> PyResult<T> {
     let outcome = py.detach(|| {
         output::silence();
-        work()
+        fp_mode::standard(work)
     });
     failure::result(py, outcome)
 }

@@ -1,8 +1,10 @@
 """Plants: arrays, bits, cores, Ctrl-C."""
 
 import _thread
+import ctypes
 import json
 import os
+import platform
 import threading
 import time
 import tracemalloc
@@ -30,6 +32,23 @@ def test_plant_has_the_bits_of_the_core(name):
     assert plants.digests().tolist() == [BITS["joints"][name]["plant"]] * 3
     # Header of the tables: mark, version, size, digest.
     assert int.from_bytes(plants.tables()[16:24], "little") == BITS["joints"][name]["tables"]
+
+
+def test_rounding_of_other_modules_changes_no_bit():
+    torque, load = torques(3000)
+    expected, other = Plant("q1"), None
+    expected.step(torque, load, record=())
+    libm = ctypes.CDLL("libm.so.6")
+    upward = {"x86_64": 0x800, "aarch64": 0x400000}[platform.machine()]
+    libm.fesetround(upward)
+    try:
+        other = Plant("q1")
+        other.step(torque, load, record=())
+        mode = libm.fegetround()
+    finally:
+        libm.fesetround(0)
+    assert mode == upward, "the mode of the caller stays"
+    assert other.digests() == expected.digests()
 
 
 def test_recording_changes_no_bit():

@@ -1,5 +1,7 @@
+#![no_std]
 //! Standard mode of the floating-point unit: round to nearest, subnormals kept, NaN propagated, no traps. A caller may
-//! have set another mode (`-ffast-math` does); each function sets the standard mode and restores the caller's.
+//! have set another mode (`-ffast-math` does); each function sets the standard mode and restores the caller's. A thread
+//! begins in the mode of the thread that started it.
 
 use unit::{enter, leave};
 
@@ -83,5 +85,5 @@ mod unit {
 
 #[cfg(not(any(all(target_arch = "arm", target_abi = "eabihf"), target_arch = "x86_64", target_arch = "aarch64")))]
 compile_error!(
-    "the mode of this processor's floating-point unit is not known here: add it to bindings/c/src/fp_mode.rs"
+    "the mode of this processor's floating-point unit is not known here: add it to bindings/fp-mode/src/lib.rs"
 );

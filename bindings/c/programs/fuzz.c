@@ -362,11 +362,14 @@ int main(int count, char **arguments) {
             }
             case 23: {
                 void *const to = pointer(plant, observer);
-                const uint32_t *const from = (const uint32_t *)pointer(state_words, NULL);
-                const size_t words = size(JOINT_PLANT_STATE_WORDS);
-                /* The program does not track whether the words are a state, and a finite one. */
-                const int sure = is_wrong || !started[4];
-                status = joint_plant_load((JointPlant *)to, from, words);
+                uint32_t *const words = (uint32_t *)pointer(state_words, NULL);
+                const size_t of = size(JOINT_PLANT_STATE_WORDS);
+                const uint32_t at = chance(JOINT_PLANT_STATE_WORDS), bit = chance(4) == 0 ? 1u << chance(32) : 0u;
+                /* The program does not track whether the words are a state. */
+                const int sure = is_wrong || !started[4] || bit != 0u;
+                state_words[at] ^= bit;
+                status = joint_plant_load((JointPlant *)to, words, of);
+                state_words[at] ^= bit;
                 is_wrong = sure || status != JOINT_STATUS_OK;
                 break;
             }

@@ -2,13 +2,14 @@
 
 use core::mem::MaybeUninit;
 
-use c_plant::{MOST_PLANETS, Motion, Plant, STATE_WORDS, StateError};
+use c_plant::{MOST_PLANETS, Motion, Plant, STATE_LAYOUT};
+use model_core::numbers::state_words::{Reader, Writer};
 use model_core::virtual_joint::DrivenLink;
-
 use table_blob::Blob;
 
 use crate::estimates::{JointContact, JointSamples};
 use crate::object::{Kind, Storage, open, open_shared, start, usable};
+use crate::state::{HEAD, Identity, load, save};
 use crate::status::JointStatus;
 
 /// 64-bit words of a plant.
@@ -17,8 +18,8 @@ pub const JOINT_PLANT_WORDS: usize = 80;
 pub const JOINT_MOST_PLANETS: usize = 5;
 const _: () = assert!(JOINT_MOST_PLANETS == MOST_PLANETS);
 /// 32-bit words of a plant's saved state.
-pub const JOINT_PLANT_STATE_WORDS: usize = 32;
-const _: () = assert!(JOINT_PLANT_STATE_WORDS == STATE_WORDS);
+pub const JOINT_PLANT_STATE_WORDS: usize = 39;
+const _: () = assert!(JOINT_PLANT_STATE_WORDS == HEAD + STATE_LAYOUT.words);
 
 /// Storage of a plant. Its content is the library's own.
 #[repr(C)]
@@ -29,6 +30,11 @@ pub struct JointPlant {
 impl Kind for Plant<'static> {
     type Storage = JointPlant;
     const MARK: u32 = 0x9191_9191;
+}
+
+/// What a plant's state must agree with; the tables have the number of planets.
+fn identity(tables: u64) -> Identity {
+    Identity { kind: Plant::MARK, layout: STATE_LAYOUT, tables }
 }
 
 /// True motion of a plant, which no sensor measures: for evaluating a controller.
@@ -185,20 +191,14 @@ pub unsafe extern "C" fn joint_plant_save(plant: *const JointPlant, state: *mut 
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open_shared::<Plant<'static>>(plant) }?;
-        usable(state)?;
-        if words != STATE_WORDS {
-            return Err(JointStatus::WrongSize);
-        }
-        let mut found = [0; STATE_WORDS];
-        object.value.save_state(&mut found);
-        // SAFETY: aligned, not NULL, and valid for writes of this many words.
-        unsafe { state.cast::<[u32; STATE_WORDS]>().write(found) };
-        Ok(())
+        let write = |to: &mut Writer| object.value.write_state(to);
+        // SAFETY: the caller's promise, as required by the header.
+        unsafe { save::<JOINT_PLANT_STATE_WORDS>(state, words, &identity(object.tables_digest()), write) }
     })
     .into()
 }
 
-/// Continues from a saved state of a plant of the same joint, in this process or another. `words` is
+/// Continues from a saved state of a plant of the same tables, in this process or another. `words` is
 /// JOINT_PLANT_STATE_WORDS. Equal states continue with equal bits.
 #[unsafe(no_mangle)]
 #[must_use]
@@ -206,16 +206,10 @@ pub unsafe extern "C" fn joint_plant_load(plant: *mut JointPlant, state: *const 
     fp_mode::standard(|| {
         // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<Plant<'static>>(plant) }?;
-        usable(state)?;
-        if words != STATE_WORDS {
-            return Err(JointStatus::WrongSize);
-        }
-        // SAFETY: aligned, not NULL, and this many words by the caller's promise.
-        let state = unsafe { state.cast::<[u32; STATE_WORDS]>().read() };
-        object.value.load_state(&state).map_err(|error| match error {
-            StateError::OtherJoint => JointStatus::OtherJoint,
-            StateError::NotFinite => JointStatus::NotFinite,
-        })
+        let identity = identity(object.tables_digest());
+        let read = |from: &mut Reader| object.value.read_state(from);
+        // SAFETY: the caller's promise, as required by the header.
+        unsafe { load::<JOINT_PLANT_STATE_WORDS>(state, words, &identity, read) }
     })
     .into()
 }

@@ -2,20 +2,19 @@
 //! Plant of any number of planets behind one type. It is a separate crate because it is compiled for speed, as in the
 //! firmware's images, while `bindings/c` is compiled for size: nothing in here is generic for a caller.
 
-mod state;
-
 use core::mem::MaybeUninit;
 
 use model_core::gears::Tables;
+use model_core::numbers::state_words::{Layout, Reader, StateWords, Writer};
 use model_core::observer::Samples;
-use model_core::virtual_joint::{DrivenLink, SurroundingsTable, VirtualJoint};
+use model_core::virtual_joint::{DrivenLink, SurroundingsTable, VirtualJoint, VirtualJointState};
 use parameters::ContactState;
 use table_blob::{Blob, BlobError, Gears};
 
-pub use state::{STATE_WORDS, StateError};
-
 /// Maximum number of planets.
 pub const MOST_PLANETS: usize = 5;
+/// Layout of the state of a plant with the most planets; others use its first words.
+pub const STATE_LAYOUT: Layout = VirtualJointState::<f32, MOST_PLANETS>::LAYOUT;
 
 /// Plant of a joint with any supported number of planets.
 #[derive(Debug)]
@@ -119,16 +118,17 @@ impl<'t> Plant<'t> {
         for_each_joint!(&mut self.0, joint => joint.shift(turns, fraction, speed));
     }
 
-    /// Writes the state.
+    /// Writes the state. A plant of the same tables that reads the words continues with equal bits, and so does this plant
+    /// once it has read them.
     #[inline(never)]
-    pub fn save_state(&self, words: &mut [u32; STATE_WORDS]) {
-        for_each_joint!(&self.0, joint => state::save(joint, words));
+    pub fn write_state(&self, to: &mut Writer) {
+        for_each_joint!(&self.0, joint => joint.state().write(to));
     }
 
-    /// Replaces the state; a refused state changes nothing.
+    /// Replaces the state by one of a plant of the same tables.
     #[inline(never)]
-    pub fn load_state(&mut self, words: &[u32; STATE_WORDS]) -> Result<(), StateError> {
-        for_each_joint!(&mut self.0, joint => state::load(joint, words))
+    pub fn read_state(&mut self, from: &mut Reader) {
+        for_each_joint!(&mut self.0, joint => joint.set_state(&VirtualJointState::read(from)));
     }
 
     /// Speeds of motor and link [rad/s].
@@ -172,4 +172,34 @@ fn motion<const N: usize>(joint: &VirtualJoint<'_, f32, N>) -> Motion {
         contacts.iter_mut().zip(kind.1).for_each(|(place, value)| *place = *value);
     }
     motion
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use model_core::VirtualJointDesign;
+
+    #[test]
+    fn read_state_continues_with_equal_bits() {
+        let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+        let design = VirtualJointDesign::<3>::new(&q1, 10_000).unwrap();
+        let [mut one, mut other] = [(); 2].map(|()| Plant(Joint::Three(design.joint())));
+        for period in 0..2_000 {
+            let link = DrivenLink { inverse_inertia: 2.0, acceleration: 0.3 };
+            one.advance_with_link((0.01 * period as f32).cos(), link);
+        }
+        let words_of = |plant: &Plant<'_>| {
+            let mut words = [0; STATE_LAYOUT.words];
+            plant.write_state(&mut Writer::new(&mut words));
+            words
+        };
+        let words = words_of(&one);
+        for plant in [&mut one, &mut other] {
+            plant.read_state(&mut Reader::new(&words));
+            assert_eq!(words_of(plant), words);
+            (0..500).for_each(|_| plant.advance(0.4, 0.1));
+        }
+        assert_eq!(words_of(&one), words_of(&other));
+        assert_eq!(one.samples(), other.samples());
+    }
 }

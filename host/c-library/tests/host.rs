@@ -122,6 +122,21 @@ fn width_probe_and_memory_match_core() {
     assert!(lines.contains(&"memory the same".to_owned()), "{lines:?}");
 }
 
+/// States continue in objects of the same tables only: a joint with as many planets, or the same joint at another rate, is
+/// refused.
+#[test]
+fn states_of_other_tables_are_refused() {
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    let source = programs::folder().join("states.c");
+    let program = bench.compile("gcc", &[&source], &["-std=c99", "-O2"]).expect("a program");
+    for (joint, rate) in [("s1", 10_000), ("q1", 20_000)] {
+        bench.write("other.bin", &designed(joint, rate).bytes()).expect("room");
+        let other = bench.path("other.bin");
+        let lines = programs::run(&program, &[other.to_str().expect("a path")]).expect("a run");
+        assert_eq!(lines, ["refused states changed nothing", "a loaded state is equal"], "{joint}, {rate} Hz");
+    }
+}
+
 /// The wiring check names the reversed signal, with the core's torques.
 #[test]
 fn wiring_check_matches_core_bitwise() {

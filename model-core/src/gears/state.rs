@@ -11,6 +11,7 @@ use crate::gears::excitation::{PhaseHarmonics, Phasor, mesh_phase_advance};
 use crate::gears::tables::{Rigid, Tables};
 use crate::numbers::Real;
 use crate::numbers::digest::{self, chain};
+use crate::numbers::state_words::state_words;
 
 /// Relative coordinates (S1), or their rates or accelerations, in units of b_c.
 ///
@@ -25,6 +26,8 @@ pub struct Relative<T, const N: usize> {
     /// u_c - u_l; stays zero without compliance.
     pub wind_up: T,
 }
+
+state_words! { struct Relative<T, P> { planets, gap, wind_up } }
 
 impl<T: Real, const N: usize> Relative<T, N> {
     /// Zero coordinates.
@@ -95,6 +98,8 @@ pub struct RigidBody {
     pub speed: i64,
 }
 
+state_words! { struct RigidBody { turns, fraction, speed } }
+
 impl RigidBody {
     /// Rigid body at rest at angle zero.
     pub const REST: Self = Self { turns: 0, fraction: 0, speed: 0 };
@@ -129,6 +134,8 @@ pub struct State<T, const N: usize> {
     /// Mesh phase of the `time` mode in 2^-64 periods; unused in `angle` mode.
     pub phase: u64,
 }
+
+state_words! { struct State<T, P> { position, rate, rigid, phase } }
 
 impl<T: Real, const N: usize> State<T, N> {
     /// State at rest, undeformed, at angle and phase zero.

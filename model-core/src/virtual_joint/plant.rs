@@ -17,6 +17,7 @@ use crate::gears::{Model, Outputs, State, Torques};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
+use crate::numbers::state_words::state_words;
 use crate::observer::{Reading, Samples};
 use crate::virtual_joint::tables::{
     COMMAND_QUEUE_LENGTH, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
@@ -35,6 +36,8 @@ pub struct ActingTorques<T: Real> {
     /// Torque that brakes the link: friction, weight, disturbance.
     pub load: T,
 }
+
+state_words! { struct ActingTorques<T> { air_gap, drive, load } }
 
 /// Link that another simulator moves, over one control period: `acceleration of the link = torque of the gears *
 /// inverse_inertia + acceleration`. Weight and friction of the link belong to the other simulator.
@@ -60,6 +63,8 @@ pub struct VirtualJointState<T: Real, const N: usize> {
     /// Torques of the last period.
     pub acting: ActingTorques<T>,
 }
+
+state_words! { struct VirtualJointState<T, P> { gears, commands, current, periods, acting } }
 
 /// Joint with its surroundings.
 ///

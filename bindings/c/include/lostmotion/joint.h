@@ -136,7 +136,7 @@
 #define JOINT_MOST_PLANETS 5
 
 // 32-bit words of a plant's saved state.
-#define JOINT_PLANT_STATE_WORDS 32
+#define JOINT_PLANT_STATE_WORDS 39
 
 // Result of every function. Unless it is `JOINT_STATUS_OK`, nothing was changed.
 enum JointStatus
@@ -823,7 +823,7 @@ JointStatus joint_plant_shift(struct JointPlant *plant,
 // Copies the state of a plant, without addresses. `words` is JOINT_PLANT_STATE_WORDS.
 JOINT_MUST_USE JointStatus joint_plant_save(const struct JointPlant *plant, uint32_t *state, size_t words);
 
-// Continues from a saved state of a plant of the same joint, in this process or another. `words` is
+// Continues from a saved state of a plant of the same tables, in this process or another. `words` is
 // JOINT_PLANT_STATE_WORDS. Equal states continue with equal bits.
 JOINT_MUST_USE JointStatus joint_plant_load(struct JointPlant *plant, const uint32_t *state, size_t words);
 

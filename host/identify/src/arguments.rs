@@ -12,6 +12,23 @@ use report::failure::Outcome;
 /// Standard deviation of an inertia in a joint file, relative; typical of inertias from drawings.
 pub const INERTIA_ERROR: f64 = 0.015;
 
+/// Options that have no meaning for a simulated log, which is written in place of LOG. An option that needs `--simulate` names
+/// them, too: clap takes an option without what it needs if that conflicts with another one.
+const NOT_SIMULATED: [&str; 12] = [
+    "topic",
+    "column",
+    "unit",
+    "map",
+    "map_joint",
+    "torque_error",
+    "inertia_error",
+    "out",
+    "json",
+    "quasi_static",
+    "output_locked",
+    "output_only",
+];
+
 /// Arguments of `joint identify`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
@@ -73,13 +90,13 @@ pub struct Arguments {
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * INERTIA_ERROR, value_parser = percent)]
     pub inertia_error: f64,
     /// Writes LOG instead of reading it: the recommended test, simulated by the f64 reference of the joint file
-    #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "map_joint", "torque_error", "inertia_error", "out", "json"])]
+    #[arg(long, conflicts_with_all = NOT_SIMULATED)]
     pub simulate: bool,
     /// Seed of a simulated test's noise and encoder phases
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate", conflicts_with_all = NOT_SIMULATED)]
     pub seed: u64,
     /// Adds the torque at the output to a simulated test
-    #[arg(long, requires = "simulate")]
+    #[arg(long, requires = "simulate", conflicts_with_all = NOT_SIMULATED)]
     pub with_output_torque: bool,
     /// Folder for report.html, joint.toml and findings.json; files that this command did not write are not overwritten
     /// [default: joint-out/identify/<joint>]

@@ -119,3 +119,82 @@ fn run_subcommand(cli: &Cli) -> Outcome<()> {
 fn show_help() -> Outcome<()> {
     output::print(&Cli::command().render_long_help().to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::error::ErrorKind;
+    use clap::{ArgAction, Command};
+
+    use super::*;
+
+    /// Values of which at least one fits each argument.
+    const VALUES: [&str; 9] =
+        ["odrive-3.6", "1", "q1", "10", "a=1", "1..2", "motor_angle=turns", "127.0.0.1:1", "1=q1"];
+
+    /// Words that give an argument a value which it accepts.
+    fn words(command: &Command, id: &str) -> Vec<String> {
+        let argument = command.get_arguments().find(|argument| argument.get_id() == id).expect("an argument");
+        let option = argument.get_long().map(|long| format!("--{long}"));
+        if !matches!(argument.get_action(), ArgAction::Set | ArgAction::Append) {
+            return option.into_iter().collect();
+        }
+        let possible = argument.get_possible_values();
+        let accepted = |value: &str| {
+            let line = option.iter().cloned().map(|option| format!("{option}={value}"));
+            let line: Vec<String> = if option.is_some() { line.collect() } else { vec![value.to_owned()] };
+            (!matches!(outcome(command, &line), Err(ErrorKind::InvalidValue | ErrorKind::ValueValidation)))
+                .then_some(line)
+        };
+        possible.first().map(|value| value.get_name()).into_iter().chain(VALUES).find_map(accepted).unwrap_or_default()
+    }
+
+    fn outcome(command: &Command, words: &[String]) -> Result<(), ErrorKind> {
+        let line = std::iter::once(command.get_name().to_owned()).chain(words.iter().cloned());
+        command.clone().try_get_matches_from(line).map(|_| ()).map_err(|error| error.kind())
+    }
+
+    /// Options that an option needs and that conflict with another one: clap then takes the option without what it needs,
+    /// so that it has no effect, unless it conflicts as well.
+    fn ignored(command: &Command) -> Vec<String> {
+        let all: Vec<Vec<String>> = command
+            .get_arguments()
+            .map(|argument| words(command, argument.get_id().as_str()))
+            .filter(|words| !words.is_empty() && words[0] != "--help")
+            .collect();
+        let bases = std::iter::once(Vec::new()).chain(all.iter().cloned());
+        let Some(base) = bases.into_iter().find(|base| outcome(command, base).is_ok()) else { return Vec::new() };
+        let mut found = Vec::new();
+        for option in all.iter().filter(|words| words[0].starts_with("--")) {
+            let with = |others: &[&Vec<String>]| {
+                let words = others
+                    .iter()
+                    .fold([base.clone(), option.clone()].concat(), |all, other| [all, (*other).clone()].concat());
+                outcome(command, &words)
+            };
+            if with(&[]) != Err(ErrorKind::MissingRequiredArgument) {
+                continue;
+            }
+            let accepted: Vec<&Vec<String>> = all.iter().filter(|other| with(&[other]).is_ok()).collect();
+            for (place, one) in accepted.iter().enumerate() {
+                for other in &accepted[place + 1..] {
+                    let both = [base.clone(), (*one).clone(), (*other).clone()].concat();
+                    if outcome(command, &both) == Err(ErrorKind::ArgumentConflict) {
+                        found.push(format!("{} {} with {} or {}", command.get_name(), option[0], one[0], other[0]));
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn no_option_is_ignored_for_want_of_another() {
+        let mut command = Cli::command();
+        command.build();
+        let mut commands: Vec<Command> = command.get_subcommands().cloned().collect();
+        let inner: Vec<Command> = commands.iter().flat_map(|outer| outer.get_subcommands().cloned()).collect();
+        commands.extend(inner);
+        let found: Vec<String> = commands.iter().flat_map(ignored).collect();
+        assert!(found.is_empty(), "{found:#?}");
+    }
+}

@@ -1,23 +1,39 @@
 //! Command line of `joint identify --quasi-static`.
 
+/// Options that have no meaning for slow logs. An option that needs `--quasi-static` names them, too: clap takes an option
+/// without what it needs if that conflicts with another one.
+const NOT_SLOW: [&str; 11] = [
+    "joint",
+    "set",
+    "motor_bits",
+    "output_bits",
+    "torque_error",
+    "inertia_error",
+    "simulate",
+    "seed",
+    "with_output_torque",
+    "output_locked",
+    "output_only",
+];
+
 /// Options of the quasi-static mode.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Slow logs")]
 pub struct Options {
     /// Reads a log of slow sweeps, without a joint file: lost motion, hysteresis, error map, friction
-    #[arg(long, conflicts_with_all = ["joint", "set", "motor_bits", "output_bits", "torque_error", "inertia_error", "simulate"])]
+    #[arg(long, conflicts_with_all = NOT_SLOW)]
     pub quasi_static: bool,
     /// Seconds of the log with the output loaded one way, such as 0..60; given a second time for the other way
-    #[arg(long = "half", value_name = "FROM..TO", requires = "quasi_static", value_parser = stretch)]
+    #[arg(long = "half", value_name = "FROM..TO", requires = "quasi_static", conflicts_with_all = NOT_SLOW, value_parser = stretch)]
     pub halves: Vec<(f64, f64)>,
     /// Units of the output's column in a turn of the output
-    #[arg(long, value_name = "N", requires = "quasi_static", value_parser = positive)]
+    #[arg(long, value_name = "N", requires = "quasi_static", conflicts_with_all = NOT_SLOW, value_parser = positive)]
     pub output_units_per_turn: Option<f64>,
     /// Units of the motor's column in a turn of the motor
-    #[arg(long, value_name = "N", requires = "quasi_static", value_parser = positive)]
+    #[arg(long, value_name = "N", requires = "quasi_static", conflicts_with_all = NOT_SLOW, value_parser = positive)]
     pub motor_units_per_turn: Option<f64>,
     /// Turns of the motor per turn of the output, negative if they count in opposite directions [default: 1]
-    #[arg(long, value_name = "R", requires = "quasi_static", allow_hyphen_values = true, value_parser = ratio)]
+    #[arg(long, value_name = "R", requires = "quasi_static", conflicts_with_all = NOT_SLOW, allow_hyphen_values = true, value_parser = ratio)]
     pub gear_ratio: Option<f64>,
 }
 

@@ -46,7 +46,7 @@ pub struct Arguments {
     pub role: Option<RoleName>,
     /// Test files with --host: saves the estimated parameters at the end of each run, as a board does, with their joint
     /// file, for `joint memory`
-    #[arg(long, requires = "host")]
+    #[arg(long, requires = "host", conflicts_with_all = ["role", "force"])]
     pub memory: bool,
     /// Test files with --host: keeps the result of every seed in the folder `tasks` of --out, and goes on from the results
     /// that are there; --dask and --slurm do so too
@@ -108,7 +108,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "host")]
     pub force: bool,
     /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
-    #[arg(long, conflicts_with = "port")]
+    #[arg(long, conflicts_with_all = ["port", "baud", "named_board", "no_build"])]
     pub check: bool,
 }
 

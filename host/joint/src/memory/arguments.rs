@@ -80,6 +80,6 @@ pub(super) struct BoardArguments {
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,
     /// Role of the emulated board [default: observer]
-    #[arg(long, value_enum, conflicts_with = "port")]
+    #[arg(long, value_enum, conflicts_with_all = ["port", "baud", "named_board"])]
     pub role: Option<RoleName>,
 }

@@ -128,7 +128,7 @@ pub struct Drive {
     output: Option<Encoder>,
     /// Offset of the output angle to rotor angle over ratio.
     offset: Option<Turns>,
-    /// Sum of all shifts by [`Drive::set_position`].
+    /// Reported angle less that of an observer: see [`Drive::origin`].
     origin: Turns,
     state: State,
     calibrated: bool,
@@ -305,7 +305,8 @@ impl Drive {
         self.profile.restart(position, self.feedback.velocity);
     }
 
-    /// Reported angle of the output less the angle by its encoder: the sum of all shifts by [`Drive::set_position`].
+    /// Reported angle of the output less the angle that an observer of the same encoders begins with: the angle by the
+    /// output encoder or, without one, the travel since the first reading.
     pub fn origin(&self) -> Turns {
         self.origin
     }
@@ -384,6 +385,9 @@ impl Drive {
             // At power-up the output encoder tells the turn of the output, if there is one.
             let position = feedback.output_position.unwrap_or(geared);
             self.offset = Some(position.minus(geared));
+            if output.is_none() {
+                self.origin = position;
+            }
             self.profile.restart(position, 0.0);
             feedback.target = position;
         }

@@ -97,15 +97,15 @@ fn run(
         .then(|| design_from_truth(file, case))
         .transpose()?;
     let mut controller = match (designed, &from_truth) {
-        (Some(designed), _) => compensation_controller(spec.controller, case, designed, port)?,
+        (Some(designed), _) => compensation_controller(spec.controller, file, case, designed, port)?,
         (None, Some(tables)) => {
             ActiveController::TrueState(Box::new(TrueStateCompensation::new(tables, &case.truth.parameters)))
         }
         (None, None) => ActiveController::rival(spec.controller, case.knowledge(), case.bandwidth(file)?),
     };
-    let run = RunContext { file, case, spec, designed, watch };
+    let run = RunContext { file, case, spec, designed, watch, mounting_seed: seed };
     if file.from_memory && spec.controller.is_compensation() {
-        // The first run has other noise, so that the memory holds the joint and not the noise.
+        // The first run has other noise and another place in the gap, so that the memory holds the joint alone.
         RunContext { watch: watch.named(None), ..run }.execute(&mut controller, !seed)?;
         let memory_at_start = controller.restart_from_memory()?;
         return Ok(RunHistory { memory_at_start, ..run.execute(&mut controller, seed)? });
@@ -116,9 +116,11 @@ fn run(
 /// Plant, motion and faults of a case.
 pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
     let joint = if spec.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
+    let start = Start::Relative(start_state(&joint, seed));
     Setup {
         plant: spec.plant,
-        start: Start::Relative(start_state(&joint, seed)),
+        start: start.clone(),
+        mounting: start,
         disturbances: case.disturbances.clone(),
         faults: if spec.without_gap { Vec::new() } else { file.faults.clone() },
         ..Setup::new(joint, case.train.clone(), case.motion.clone(), file.duration, seed)
@@ -143,16 +145,20 @@ struct RunContext<'r> {
     spec: RunSpec,
     designed: Option<&'r Designed>,
     watch: Watch<'r>,
+    /// Seed of the place in the gap at which the encoders were mounted.
+    mounting_seed: u64,
 }
 
 impl RunContext<'_> {
     fn execute(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
-        let Self { file, case, spec, designed, watch } = *self;
-        let rig = Rig::new(&setup(file, case, seed, spec))?;
+        let Self { file, case, spec, designed, watch, mounting_seed } = *self;
+        let mut setup = setup(file, case, seed, spec);
+        setup.mounting = Start::Relative(start_state(&setup.joint, mounting_seed));
+        let rig = Rig::new(&setup)?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
         let mut history = RunHistory::begin(rig.period(), rig.periods());
         // The compensation has a translator of its own; this one logs the readings as they arrive.
-        let mut translator = translator(case);
+        let mut translator = translator(file, case);
         let mut feed = watch.claim(|name| description(1, name, &case.truth.parameters));
         rig.run(controller, &mut set_points, &mut |period| {
             if period.index % PERIODS_BETWEEN_CHECKS == 0 && watch.is_over() {
@@ -174,23 +180,24 @@ impl RunContext<'_> {
 
 fn compensation_controller<'d>(
     name: ControllerName,
+    file: &TestFile,
     case: &Case,
     designed: &'d Designed,
     port: MakePort<'_>,
 ) -> Outcome<ActiveController<'d>> {
-    let translator = translator(case);
+    let translator = translator(file, case);
     Ok(match name {
         ControllerName::Probe => ActiveController::Probe(port(designed)?, translator),
         _ => ActiveController::Compensation(port(designed)?, translator),
     })
 }
 
-/// Translator to the samples of an observer of the nominal joint.
-pub fn translator(case: &Case) -> Translator {
+/// Translator to the samples of an observer of the nominal joint, and from the set-points of a file.
+pub fn translator(file: &TestFile, case: &Case) -> Translator {
     let surroundings = &case.nominal_surroundings;
     let settings = observer_settings(surroundings);
     let turns = [surroundings.motor_encoder, surroundings.output_encoder].map(|encoder| encoder.counts_per_turn);
-    Translator::new(settings.clock_rate / settings.control_rate, turns, &case.zeros)
+    Translator::new(settings.clock_rate / settings.control_rate, turns, &case.zeros, file.output_encoder)
 }
 
 /// Designs the compensation that is fed with the true state, for the true joint.

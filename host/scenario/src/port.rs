@@ -83,16 +83,18 @@ pub struct Translator {
     ranges: [i64; 2],
     /// Raw counts at the start of the joint: motor, output.
     zeros: [i64; 2],
+    /// Whether the observer reads the output encoder. Without it, its angle of the link counts from the start.
+    reads_output: bool,
     /// Turn of the output encoder's first reading, the observer's turn zero.
     first_turn: Option<i32>,
     torque: f32,
 }
 
 impl Translator {
-    /// Translator for encoders with the given counts per turn and zeros.
-    pub fn new(ticks: u32, counts_per_turn: [u64; 2], zeros: &EncoderZeros) -> Self {
+    /// Translator for encoders with the given counts per turn and zeros, and an observer that reads the output or not.
+    pub fn new(ticks: u32, counts_per_turn: [u64; 2], zeros: &EncoderZeros, reads_output: bool) -> Self {
         let ranges = counts_per_turn.map(u64::cast_signed);
-        Self { ticks, ranges, zeros: zeros.counts(ranges), first_turn: None, torque: 0.0 }
+        Self { ticks, ranges, zeros: zeros.counts(ranges), reads_output, first_turn: None, torque: 0.0 }
     }
 
     /// Treats the next reading as the first again.
@@ -123,7 +125,8 @@ impl Translator {
 
     /// Set-point on the scale of the observer's link shaft, with angles as whole turns and fraction.
     pub fn command(&self, set_point: &SetPoint) -> Command<f32> {
-        command(set_point, self.zeros[1] as f64 / self.ranges[1] as f64 - f64::from(self.first_turn.unwrap_or(0)))
+        let of_output = self.zeros[1] as f64 / self.ranges[1] as f64 - f64::from(self.first_turn.unwrap_or(0));
+        command(set_point, if self.reads_output { of_output } else { 0.0 })
     }
 
     /// Stores the torque for the observer's next samples.
@@ -173,8 +176,21 @@ mod tests {
     fn late_period_has_time_of_start() {
         let frame = TimedReading { counts: 0, period: 7, lateness: 42 };
         let seen = ControllerInputs { period: 7, lateness: 42, motor: frame, output: Some(frame) };
-        let samples = Translator::new(1000, [14, 17], &EncoderZeros::default()).samples(&seen);
+        let samples = Translator::new(1000, [14, 17], &EncoderZeros::default(), true).samples(&seen);
         let times = (samples.time, samples.motor.time, samples.output.map(|reading| reading.time));
         assert_eq!(times, (7042, 7042, Some(7042)));
+    }
+
+    /// The start is angle zero of an observer without the output encoder, wherever the encoders are mounted.
+    #[test]
+    fn unread_output_encoder_moves_no_set_point() {
+        let set_point = SetPoint::Position { now: Motion { position: 0.25 * TAU, ..Motion::default() }, ahead: None };
+        let place = |reads_output| {
+            let translator = Translator::new(1000, [1 << 14, 1 << 17], &EncoderZeros::draw(1), reads_output);
+            let Command::Position { now, .. } = translator.command(&set_point) else { panic!("a position") };
+            (now.position.turns, now.position.fraction)
+        };
+        assert_eq!(place(false), (0, 0.25));
+        assert_ne!(place(true), (0, 0.25));
     }
 }

@@ -192,7 +192,7 @@ impl Prepared {
             rig,
             case,
             model: choices.plant,
-            translator: scenario::execution::translator(case),
+            translator: scenario::execution::translator(&test.file, case),
             compensated: designed.as_ref().map(|designed| Compensated {
                 observer: Observer::new(&designed.observer),
                 compensation: Compensation::new(&designed.compensation),
@@ -403,6 +403,25 @@ mod tests {
         }
         let error = joint.live_sample().wanted - TAU * 1000.1;
         assert!(error.abs() < 1e-6, "{error}");
+    }
+
+    /// Drive and compensation count the angle from different readings without an output encoder.
+    #[test]
+    fn hold_by_motor_encoder_alone_moves_nothing() {
+        for seed in 1..4 {
+            let choices = Choices { compensation: true, seed, ..Choices::of_plant(PlantName::Core) };
+            let prepared =
+                Prepared::load(1, &workspace().join("hil/motor-only.toml"), &choices).expect("a test without one");
+            let mut joint = prepared.start(&choices).expect("it is designed");
+            joint.step().expect("it runs");
+            let start = joint.truth().link;
+            joint.set_mode(Mode::Hold);
+            for _ in 0..5000 {
+                joint.step().expect("it runs");
+                let moved = joint.truth().link - start;
+                assert!(moved.abs() < 0.01, "seed {seed}: {moved} rad");
+            }
+        }
     }
 
     #[test]

@@ -53,7 +53,7 @@ pub struct HostFaults {
     counts_per_turn: [f64; 2],
     /// Counts of the homed encoders; readings are relative to them.
     home: Option<[i64; 2]>,
-    /// Readings of the homed encoders at the start: link angle, and motor angle without a lead.
+    /// Readings of the homed encoders at the start: link angle, and motor angle with its lead since the mounting.
     start: [i64; 2],
     past: [VecDeque<TimedReading>; 2],
     /// Periods of the last readings that arrived.
@@ -91,10 +91,13 @@ impl HostFaults {
         }
     }
 
-    /// Sets the link's angle at the start [rad], behind gears of the given ratio.
-    pub fn starting_at(self, link_angle: f64, ratio: f64) -> Self {
-        let [motor, output] = self.counts_per_turn.map(|counts| link_angle / std::f64::consts::TAU * counts);
-        Self { start: [ratio * motor, output].map(|counts| counts.round() as i64), ..self }
+    /// Sets the angles at the start, behind gears of the given ratio, and those at which the encoders were mounted.
+    pub fn starting_at(self, start: &Observation, mounted: &Observation, ratio: f64) -> Self {
+        let lead = |joint: &Observation| joint.motor_angle - ratio * joint.link_angle;
+        let angles = [ratio * start.link_angle + (lead(start) - lead(mounted)), start.link_angle];
+        let counts =
+            |shaft: usize| (angles[shaft] / std::f64::consts::TAU * self.counts_per_turn[shaft]).round() as i64;
+        Self { start: [0, 1].map(counts), ..self }
     }
 
     /// Adds a fault during a run; `seed` is that of its random numbers.

@@ -99,7 +99,9 @@ impl Twin<'_> {
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
         let [_, mounted] = mounting_angles(&self.case.zeros, counts_per_turn(&self.truth.surroundings));
-        let zero = f64::from(mounted) / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted));
+        let of_output = f64::from(mounted) / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted));
+        // Without the output encoder, the observer's angle of the link counts from the start.
+        let zero = if self.file.output_encoder { of_output } else { 0.0 };
         let knots = trajectory::knots(self.file, self.case, self.designed, zero);
         let joint = &self.truth.parameters;
         let reader = Reader::new(joint, tables);

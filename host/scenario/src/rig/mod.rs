@@ -64,9 +64,11 @@ impl Rig {
     pub fn new(setup: &Setup) -> Outcome<Self> {
         let Setup { joint, train, .. } = setup;
         let rate = f64::from(train.surroundings.control_rate);
-        let plant = plant_from(setup.plant, joint, &setup.start, train, setup.disturbances.clone(), setup.seed)?;
+        let plant_at = |state| plant_from(setup.plant, joint, state, train, setup.disturbances.clone(), setup.seed);
+        let plant = plant_at(&setup.start)?;
         let faults = HostFaults::new(&setup.faults, setup.seed, joint, train);
-        let faults = faults.starting_at(plant.joint().link_angle, joint.geometry.ratio_by_teeth());
+        let faults =
+            faults.starting_at(plant.joint(), plant_at(&setup.mounting)?.joint(), joint.geometry.ratio_by_teeth());
         Ok(Self {
             plant: plant.stepped(setup.stepping),
             faults,

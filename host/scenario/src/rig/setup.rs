@@ -19,6 +19,8 @@ pub struct Setup {
     pub train: DriveTrainParameters,
     /// Initial state of the teeth.
     pub start: Start,
+    /// State of the teeth in which the encoders were mounted: motor encoder and output encoder then agree.
+    pub mounting: Start,
     /// Stepping of the f64 reference.
     pub stepping: Stepping,
     /// Torques on the link.
@@ -42,9 +44,11 @@ impl Setup {
         duration: f64,
         seed: u64,
     ) -> Self {
+        let centred = Start::Relative(RelativeState::centred(joint.geometry.planets));
         Self {
             plant: PlantName::Reference,
-            start: Start::Relative(RelativeState::centred(joint.geometry.planets)),
+            start: centred.clone(),
+            mounting: centred,
             joint,
             train,
             stepping: Stepping::Fixed,

@@ -5,6 +5,7 @@ use std::path::Path;
 use board::device::board::Board;
 use c_library::library::{self, Target};
 use joint_file::JointFile;
+use model_core::controller::design::ControlRequest;
 use report::failure::Outcome;
 use report::progress::Progress;
 use report::workspace::workspace;
@@ -23,6 +24,8 @@ pub struct Request<'a> {
     pub content: Content,
     /// Joint, with the control rate of the FMU.
     pub joint: &'a JointFile,
+    /// Requirements on the controller.
+    pub control: ControlRequest,
     /// Board whose time a plant's sub-steps are chosen for.
     pub board: &'a Board,
     /// File for the FMU.
@@ -31,7 +34,7 @@ pub struct Request<'a> {
 
 /// Writes the FMU and returns the line for the user.
 pub fn run(request: &Request) -> Outcome<String> {
-    let model = Model::new(request.fmi, request.content, request.joint, request.board)?;
+    let model = Model::new(request.fmi, request.content, request.joint, request.control, request.board)?;
     let files = Progress::during(|progress| {
         progress.stage("building the library");
         let library = library::build(Target::Host, "library", &|line: &str| progress.print_message(line))?;

@@ -3,6 +3,7 @@
 use c_library::tables::{self, CTables};
 use clap::ValueEnum;
 use joint_file::JointFile;
+use model_core::controller::design::ControlRequest;
 use model_core::gears::Kinematics;
 use model_core::numbers::digest::{START, chain};
 use report::failure::{Failure, Outcome};
@@ -78,14 +79,25 @@ pub struct Model {
 
 impl Model {
     /// Designs the tables of a joint for a part of it.
-    pub fn new(fmi: Fmi, content: Content, joint: &JointFile, board: &board::device::board::Board) -> Outcome<Self> {
-        let make = |plant| tables::make(joint, joint, tables::DEFAULT_REQUEST, plant, board);
+    pub fn new(
+        fmi: Fmi,
+        content: Content,
+        joint: &JointFile,
+        request: ControlRequest,
+        board: &board::device::board::Board,
+    ) -> Outcome<Self> {
+        let make = |plant| tables::make(joint, &tables::nominal(joint, request), plant, board);
         let tables = make(content == Content::Plant).map_err(|failure| {
             // The remedies of `joint tables` are not accepted by `joint export`.
-            failure.with_help(match content == Content::Plant && make(false).is_ok() {
-                true => "`--model controller` exports observer and compensation without the plant",
-                false => {
+            failure.with_help(match content {
+                Content::Plant if make(false).is_ok() => {
+                    "`--model controller` exports observer and compensation without the plant"
+                }
+                Content::Plant => {
                     "`joint check` shows the limits that follow from the file; change the control rate with `--rate`"
+                }
+                Content::Controller => {
+                    "`joint check` shows the limits that follow from the file; change the requirements with `--rate` and `--bandwidth`"
                 }
             })
         })?;

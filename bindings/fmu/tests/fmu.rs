@@ -14,6 +14,7 @@ use fmu::model::{Content, Fmi, Model};
 use fmu::variables::{Kind, Role};
 use host_tests::packages::{self, succeeded};
 use model_core::compensation::{Command as Demand, Compensation, ImpedancePoint, Motion, Position};
+use model_core::controller::design::ControlRequest;
 use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
 use model_core::observer::{MAPPED, Observer};
@@ -31,7 +32,7 @@ fn joint(name: &str) -> joint_file::JointFile {
 }
 
 fn model(fmi: Fmi, content: Content, joint: &joint_file::JointFile) -> Model {
-    Model::new(fmi, content, joint, &Board::emulated()).expect("tables")
+    Model::new(fmi, content, joint, ControlRequest::USUAL, &Board::emulated()).expect("tables")
 }
 
 fn text<'f>(files: &'f [File], name: &str) -> &'f str {
@@ -177,14 +178,16 @@ fn impossible_design_names_accepted_remedy() {
     let mut coarse = joint("q1");
     coarse.surroundings.control_rate = 2000;
     for (joint, content, remedy) in [
-        (&slow, Content::Plant, "--rate"),
-        (&slow, Content::Controller, "--rate"),
+        (&slow, Content::Plant, "`--rate`"),
+        (&slow, Content::Controller, "`--rate` and `--bandwidth`"),
         (&coarse, Content::Plant, "--model controller"),
     ] {
-        let failure = Model::new(Fmi::Two, content, joint, &Board::emulated()).expect_err("no design");
+        let failure =
+            Model::new(Fmi::Two, content, joint, ControlRequest::USUAL, &Board::emulated()).expect_err("no design");
         let help = failure.help().expect("a remedy");
         assert!(help.contains(remedy), "{failure}");
-        assert!(!help.contains("--without-plant") && !help.contains("--bandwidth"), "{failure}");
+        assert!(!help.contains("--without-plant"), "{failure}");
+        assert!(content == Content::Controller || !help.contains("--bandwidth"), "{failure}");
     }
 }
 
@@ -216,6 +219,22 @@ fn other_contents_get_other_token() {
     tokens.sort_unstable();
     tokens.dedup();
     assert_eq!(tokens.len(), 6, "{tokens:?}");
+}
+
+/// Requirements of the command reach the controller of an FMU.
+#[test]
+fn controller_is_designed_as_requested() {
+    let design = |request| {
+        let model =
+            Model::new(Fmi::Two, Content::Controller, &joint("q1"), request, &Board::emulated()).expect("tables");
+        let blob = Blob::open(&model.tables.words).expect("tables");
+        let bandwidth = model.tables.made_from[1].contains("bandwidth 40 rad/s");
+        (blob.observer().expect("a part").counts.has_output, bandwidth)
+    };
+    let usual = ControlRequest::USUAL;
+    assert_eq!(design(usual), (true, false));
+    assert_eq!(design(ControlRequest { output_encoder: false, ..usual }), (false, false));
+    assert_eq!(design(ControlRequest { bandwidth: Some(40.0), ..usual }), (true, true));
 }
 
 /// A byte that moves from a name to a content, or to the next file, changes the token.

@@ -7,6 +7,7 @@ use c_library::library::{self, Library, Target};
 use c_library::shared_object::{self, Sources};
 use c_library::tables::{self, CTables};
 use joint_file::JointFile;
+use model_core::controller::design::NominalPlant;
 use model_core::gears::Kinematics;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
@@ -21,6 +22,8 @@ use crate::package::Package;
 pub struct Plugin<'a> {
     /// Joint, with the control rate of the plug-in.
     pub joint: &'a JointFile,
+    /// What the controller is designed for, with the same control rate.
+    pub nominal: NominalPlant<'a>,
     /// Board whose time the plant's sub-steps are chosen for.
     pub board: &'a Board,
     /// Folder of MuJoCo's Python package; `None` for the one that `python3` imports.
@@ -37,7 +40,7 @@ pub fn run(plugin: &Plugin) -> Outcome<String> {
             .with_help("give the plug-in another ending, such as .so"));
     }
     let package = Package::find(plugin.package.as_deref())?;
-    let tables = tables_of(plugin.joint, plugin.board)?;
+    let tables = tables_of(plugin.joint, &plugin.nominal, plugin.board)?;
     let bytes = Progress::during(|progress| {
         progress.stage("building the library");
         let library = library::build(Target::Host, "library", &|line: &str| progress.print_message(line))?;
@@ -67,11 +70,11 @@ pub fn model(link: &JointFile, tables: &CTables, file: &str) -> String {
     mjcf::model(link, &name_of(tables), file)
 }
 
-/// Tables of the plant.
-pub fn tables_of(joint: &JointFile, board: &Board) -> Outcome<CTables> {
-    tables::make(joint, joint, tables::DEFAULT_REQUEST, true, board).map_err(|failure| {
+/// Tables of the plant and of the controller for the nominal plant.
+pub fn tables_of(joint: &JointFile, nominal: &NominalPlant<'_>, board: &Board) -> Outcome<CTables> {
+    tables::make(joint, nominal, true, board).map_err(|failure| {
         failure.with_help(
-            "`joint check` shows the limits that follow from the file; change the control rate with `--rate`",
+            "`joint check` shows the limits that follow from the file; change the requirements with `--rate` and `--bandwidth`",
         )
     })
 }

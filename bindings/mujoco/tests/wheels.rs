@@ -11,6 +11,7 @@ use c_library::library::{self, Library, Target};
 use c_library::tables;
 use host_tests::packages::{self, succeeded};
 use joint_file::JointFile;
+use model_core::controller::design::ControlRequest;
 use model_core::gears::{Kinematics, Mechanics};
 use mujoco_plugin::export;
 use mujoco_plugin::package::Package;
@@ -98,7 +99,13 @@ fn environment(list: &str) -> PathBuf {
 
 /// Plug-in and model of a joint for the package of an environment; the link is that of another file.
 fn exported(folder: &Path, file: &JointFile, link: &JointFile, python: &Path) -> [PathBuf; 2] {
-    exported_with(folder, &export::tables_of(file, &Board::emulated()).expect("tables"), file, link, python)
+    exported_with(
+        folder,
+        &export::tables_of(file, &tables::nominal(file, ControlRequest::USUAL), &Board::emulated()).expect("tables"),
+        file,
+        link,
+        python,
+    )
 }
 
 /// Plug-in and model of a joint with given tables.
@@ -213,7 +220,8 @@ fn controller_follows_and_finds_backlash() {
     let inertia = parameters.rotor_inertia + parameters.link_inertia / ratio.powi(2);
     let half_backlash = parameters.sun_planet.half_backlash[0];
     let arguments = [ratio, inertia, half_backlash].map(|value| value.to_string());
-    let tables = tables::make(&file, &told, tables::DEFAULT_REQUEST, true, &Board::emulated()).expect("tables");
+    let tables =
+        export::tables_of(&file, &tables::nominal(&told, ControlRequest::USUAL), &Board::emulated()).expect("tables");
     for version in VERSIONS {
         let python = environment(version);
         let folder = tempfile::tempdir().expect("a folder");
@@ -226,6 +234,33 @@ fn controller_follows_and_finds_backlash() {
             assert!((of("first_width") / TOLD - 1.0).abs() < 0.05, "the controller was told another width: {line}");
             assert!((of("width") - 1.0).abs() < 0.1 && of("width_valid") == 1.0, "{version}: {line}");
             assert!(of("settled_after_s") < 3.0 && of("gap_rms") < 0.2, "{version}: {line}");
+        }
+    }
+}
+
+/// Without an output encoder, nobody measures the half-backlash: the controller does not claim it, and follows as a PID
+/// controller on the motor does.
+#[test]
+#[ignore = "installs 350 MB: cargo test -p mujoco-plugin -- --ignored"]
+fn motor_encoder_alone_claims_nothing() {
+    let mut file = joint_file::named::load(Path::new("q1")).expect("a joint").file;
+    file.surroundings.control_rate = RATE;
+    let parameters = &file.parameters;
+    let ratio = parameters.geometry.ratio_by_teeth();
+    let inertia = parameters.rotor_inertia + parameters.link_inertia / ratio.powi(2);
+    let arguments = [ratio, inertia, parameters.sun_planet.half_backlash[0]].map(|value| value.to_string());
+    let request = ControlRequest { output_encoder: false, ..ControlRequest::USUAL };
+    let tables = export::tables_of(&file, &tables::nominal(&file, request), &Board::emulated()).expect("tables");
+    for version in VERSIONS {
+        let python = environment(version);
+        let folder = tempfile::tempdir().expect("a folder");
+        let files = exported_with(folder.path(), &tables, &file, &file, &python);
+        let said = check(&python, "controlled", &files, &arguments.each_ref().map(String::as_str));
+        assert_eq!(said.lines().count(), 3, "{said}");
+        for line in said.lines() {
+            let of = |name| number(line, name);
+            assert!(of("gain") > 0.8, "{version}: {line}");
+            assert!(of("trust") == 0.0 && of("width_valid") == 0.0 && of("gap_valid") == 0.0, "{version}: {line}");
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use board::device::board::Board;
-use c_library::tables::make;
+use c_library::tables::{make, nominal};
 use model_core::controller::design::ControlRequest;
 use model_core::gears::Kinematics;
 use pyo3::prelude::*;
@@ -78,10 +78,11 @@ const HELP_OF_CONTROLLER: &str =
 fn tables_of(loaded: &joint_file::named::Loaded, request: Request) -> Outcome<Tables> {
     let mut joint = loaded.file.clone();
     joint.surroundings.control_rate = request.rate;
-    let made = make(&joint, &joint, request.control, request.plant, &Board::emulated()).map_err(|failure| {
-        let help = if request.plant { HELP_OF_PLANT } else { HELP_OF_CONTROLLER };
-        failure.with_help(help).while_doing(format_args!("tables of {}", loaded.name))
-    })?;
+    let made =
+        make(&joint, &nominal(&joint, request.control), request.plant, &Board::emulated()).map_err(|failure| {
+            let help = if request.plant { HELP_OF_PLANT } else { HELP_OF_CONTROLLER };
+            failure.with_help(help).while_doing(format_args!("tables of {}", loaded.name))
+        })?;
     let tables = Tables { words: made.words.into(), ratio: joint.parameters.geometry.ratio_by_teeth() };
     Blob::open(&tables.words).map_err(unusable)?;
     Ok(tables)

@@ -8,9 +8,10 @@ use std::process::Command;
 use std::time::Instant;
 
 use board::device::board::Board;
-use c_library::tables::{DEFAULT_REQUEST, make};
+use c_library::tables::{make, nominal};
 use joint_file::named;
 use model_core::compensation::{Command as SetPoint, Compensation, Motion, Position};
+use model_core::controller::design::ControlRequest;
 use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
 use model_core::observer::{MAPPED, Observer};
@@ -114,7 +115,7 @@ fn bits<const N: usize>(
 fn expected_bits() -> String {
     let lines = JOINTS.map(|name| {
         let joint = named::load(Path::new(name)).expect("a preset").file;
-        let tables = make(&joint, &joint, DEFAULT_REQUEST, true, &Board::emulated()).expect("tables");
+        let tables = make(&joint, &nominal(&joint, ControlRequest::USUAL), true, &Board::emulated()).expect("tables");
         let blob = table_blob::Blob::open(&tables.words).expect("tables");
         let (gears, around) = blob.plant().expect("a plant");
         let (plant, controller) = match gears {

@@ -10,9 +10,6 @@ use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
 use table_blob::{VERSION, Wanted, design};
 
-/// Default requirements of a controller.
-pub const DEFAULT_REQUEST: ControlRequest = ControlRequest::USUAL;
-
 /// Patterns of the written files.
 const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
 
@@ -34,21 +31,46 @@ pub struct Arguments {
     /// Control rate, in Hz [default: from the joint file]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: Option<u32>,
-    /// Bandwidth of the loop, in rad/s [default: 60, or as much as the joint allows]
-    #[arg(long, value_name = "RAD/S", value_parser = bandwidth)]
-    pub bandwidth: Option<f64>,
+    /// Controller.
+    #[command(flatten)]
+    pub controller: ControllerOptions,
     /// Joint file that observer and compensation are designed for [default: FILE]
     #[arg(long, value_name = "FILE")]
     pub told: Option<PathBuf>,
-    /// Designs the observer without the output encoder
-    #[arg(long)]
-    pub motor_only: bool,
     /// Leaves out the tables of the plant, which firmware for a real joint does not need
     #[arg(long)]
     pub without_plant: bool,
     /// Board whose time a plant's sub-steps are chosen for: a name of boards/, or the path of a board file
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
     pub board: Board,
+}
+
+/// Requirements on a controller.
+#[derive(Debug, clap::Args)]
+pub struct ControllerOptions {
+    /// Bandwidth of the loop, in rad/s [default: 60, or as much as the joint allows]
+    #[arg(long, value_name = "RAD/S", value_parser = bandwidth)]
+    pub bandwidth: Option<f64>,
+    /// Designs the observer without the output encoder
+    #[arg(long)]
+    pub motor_only: bool,
+}
+
+impl ControllerOptions {
+    /// Requirements for the design.
+    pub fn request(&self) -> ControlRequest {
+        ControlRequest { bandwidth: self.bandwidth, output_encoder: !self.motor_only, ..ControlRequest::USUAL }
+    }
+
+    /// First option that was given.
+    pub fn given(&self) -> Option<&'static str> {
+        self.bandwidth.map(|_| "--bandwidth").or(self.motor_only.then_some("--motor-only"))
+    }
+}
+
+/// Nominal plant of a joint file.
+pub fn nominal(joint: &JointFile, request: ControlRequest) -> NominalPlant<'_> {
+    NominalPlant { joint: &joint.parameters, surroundings: &joint.surroundings, request }
 }
 
 /// Parses a positive bandwidth.
@@ -75,16 +97,11 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     let loaded = named::load(&arguments.file)?;
     warnings::print(&loaded);
     let told = arguments.told.as_deref().map(named::load).transpose()?;
-    let [mut joint, mut nominal] =
-        [&loaded.file, told.as_ref().map_or(&loaded.file, |told| &told.file)].map(Clone::clone);
+    let [mut joint, mut told] = [&loaded.file, told.as_ref().map_or(&loaded.file, |told| &told.file)].map(Clone::clone);
     let rate = arguments.rate.unwrap_or(joint.surroundings.control_rate);
-    [&mut joint, &mut nominal].into_iter().for_each(|it| it.surroundings.control_rate = rate);
-    let request = ControlRequest {
-        bandwidth: arguments.bandwidth,
-        output_encoder: !arguments.motor_only,
-        ..ControlRequest::USUAL
-    };
-    let tables = make(&joint, &nominal, request, !arguments.without_plant, &arguments.board)
+    [&mut joint, &mut told].into_iter().for_each(|it| it.surroundings.control_rate = rate);
+    let nominal = nominal(&told, arguments.controller.request());
+    let tables = make(&joint, &nominal, !arguments.without_plant, &arguments.board)
         .map_err(|failure| failure.while_doing(format_args!("tables of {}", loaded.name)))?;
     let folder = Folder::prepare(arguments.out.as_deref(), "tables", &joint.parameters.name, &FILES)?;
     let name = |extension: &str| format!("{}_tables.{extension}", tables.name);
@@ -101,17 +118,10 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
 }
 
 /// Designs the tables.
-pub fn make(
-    joint: &JointFile,
-    nominal: &JointFile,
-    request: ControlRequest,
-    plant: bool,
-    board: &Board,
-) -> Outcome<CTables> {
+pub fn make(joint: &JointFile, nominal: &NominalPlant<'_>, plant: bool, board: &Board) -> Outcome<CTables> {
     let plant = plant.then_some((&joint.parameters, &joint.surroundings));
-    let told = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
-    let wanted = Wanted { plant, nominal: told, processor: board.chip().processor() };
-    let words = design(&wanted).and_then(|words| Ok((words, told.bandwidth()?)));
+    let wanted = Wanted { plant, nominal: *nominal, processor: board.chip().processor() };
+    let words = design(&wanted).and_then(|words| Ok((words, nominal.bandwidth()?)));
     let (words, bandwidth) = words.map_err(|error| {
         let of_plant = plant.is_some() && design(&Wanted { plant: None, ..wanted }).is_ok();
         Failure::new(error.to_string()).with_help(match of_plant {
@@ -131,12 +141,12 @@ pub fn make(
         None => "observer, width probe where one can be, compensation, wiring check; no plant".to_owned(),
     };
     let made_from = vec![
-        format!("joint {}, told {}", joint.parameters.name, nominal.parameters.name),
+        format!("joint {}, told {}", joint.parameters.name, nominal.joint.name),
         format!(
             "{} control periods a second, bandwidth {} rad/s, {}",
             nominal.surroundings.control_rate,
             bandwidth,
-            if request.output_encoder { "both encoders" } else { "motor encoder alone" }
+            if nominal.request.output_encoder { "both encoders" } else { "motor encoder alone" }
         ),
         parts,
     ];
@@ -211,7 +221,7 @@ pub fn joint_at(name: &Path, rate: u32) -> Outcome<JointFile> {
 
 /// Tables called `test_tables`, for the test programs.
 pub fn for_tests(joint: &JointFile, plant: bool, board: &Board) -> Outcome<CTables> {
-    Ok(CTables { name: "test".to_owned(), ..make(joint, joint, DEFAULT_REQUEST, plant, board)? })
+    Ok(CTables { name: "test".to_owned(), ..make(joint, &nominal(joint, ControlRequest::USUAL), plant, board)? })
 }
 
 #[cfg(test)]

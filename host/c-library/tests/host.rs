@@ -8,6 +8,7 @@ use c_library::library::{self, Library, Target};
 use c_library::programs::{self, Workbench, value_after};
 use c_library::run;
 use c_library::tables::{self, CTables, joint_at};
+use model_core::controller::design::ControlRequest;
 
 const PERIODS: u32 = 100_000;
 
@@ -107,7 +108,8 @@ fn width_probe_and_memory_match_core() {
     told.surroundings.load_friction.coulomb = 0.3;
     let tables = CTables {
         name: "test".to_owned(),
-        ..tables::make(&joint, &told, tables::DEFAULT_REQUEST, true, &Board::emulated()).expect("tables")
+        ..tables::make(&joint, &tables::nominal(&told, ControlRequest::USUAL), true, &Board::emulated())
+            .expect("tables")
     };
     let bench = Workbench::new(&LIBRARY, &tables).expect("room");
     let program =

@@ -1,13 +1,14 @@
 //! `joint export`: a joint for other simulators.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use board::device::board::Board;
+use c_library::tables::{ControllerOptions, nominal};
 use fmu::export::Request;
 use fmu::model::{Content, Fmi};
 use joint_file::{named, warnings};
 use mujoco_plugin::export::Plugin;
-use report::failure::Outcome;
+use report::failure::{Failure, Outcome};
 use report::{folder, output};
 
 /// Arguments of `joint export`.
@@ -17,6 +18,7 @@ use report::{folder, output};
   joint export q1 --fmu 3 --model controller --out q1_controller.fmu      encoder counts and set-point in, torque out
   joint export my_joint.toml --fmu 3 --rate 20000 --out my_joint.fmu      20 kHz in place of the joint file's rate
   joint export q1 --mujoco --out q1.so             actuator plug-in for the MuJoCo that python3 imports, and q1.xml
+  joint export worn.toml --mujoco --told q1 --out worn.so         a worn joint; its controller is designed for the new one
 
 Communication steps of an FMU and steps of MuJoCo are multiples of the control period [s]; others are refused. An FMU holds
 a binary for this machine, and its sources with a CMakeLists.txt for other machines. Two exports of one joint give the same
@@ -37,6 +39,11 @@ pub struct Arguments {
     /// File for the FMU or the plug-in; its folder must exist
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    #[command(flatten)]
+    controller: ControllerOptions,
+    /// Joint file that the plug-in's controller is designed for [default: FILE]
+    #[arg(long, value_name = "FILE", conflicts_with = "fmu")]
+    told: Option<PathBuf>,
     /// Control rate, in Hz [default: from the joint file]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
@@ -48,16 +55,28 @@ pub struct Arguments {
 /// Writes the export and prints its path.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let Arguments { out, board, .. } = arguments;
-    folder::check_file("out", out, &[&arguments.file])?;
+    let read: Vec<&Path> = std::iter::once(&arguments.file).chain(&arguments.told).map(PathBuf::as_path).collect();
+    folder::check_file("out", out, &read)?;
     let loaded = named::load(&arguments.file)?;
     warnings::print(&loaded);
     let mut joint = loaded.file;
     joint.surroundings.control_rate = arguments.rate.unwrap_or(joint.surroundings.control_rate);
+    let control = arguments.controller.request();
     let written = match (arguments.fmu, &arguments.mujoco) {
-        (Some(fmi), _) => fmu::export::run(&Request { fmi, content: arguments.model, joint: &joint, board, out }),
+        (Some(fmi), _) => {
+            let content = arguments.model;
+            if let Some(option) = arguments.controller.given().filter(|_| content == Content::Plant) {
+                return Err(Failure::new(format!("{option}: the FMU of a plant has no controller"))
+                    .with_help("`--model controller` exports observer and compensation"));
+            }
+            fmu::export::run(&Request { fmi, content, joint: &joint, control, board, out })
+        }
         (None, package) => {
-            let package = package.clone().flatten();
-            mujoco_plugin::export::run(&Plugin { joint: &joint, board, package, out })
+            let mut told =
+                arguments.told.as_deref().map(named::load).transpose()?.map_or(joint.clone(), |told| told.file);
+            told.surroundings.control_rate = joint.surroundings.control_rate;
+            let (nominal, package) = (nominal(&told, control), package.clone().flatten());
+            mujoco_plugin::export::run(&Plugin { joint: &joint, nominal, board, package, out })
         }
     };
     output::print(&written.map_err(|failure| failure.while_doing(format_args!("export of {}", loaded.name)))?)

@@ -141,6 +141,15 @@ fn missing_role_names_boards_that_have_it() {
 }
 
 #[test]
+fn controller_options_need_a_controller() {
+    let plant = ["export", "q1", "--fmu", "2", "--out", "q1.fmu"];
+    let with = |options: &[&'static str]| [plant.as_slice(), options].concat();
+    joint(&with(&["--motor-only"])).refused(&["--motor-only: the FMU of a plant", "--model controller"]);
+    joint(&with(&["--bandwidth", "40"])).refused(&["--bandwidth: the FMU of a plant", "--model controller"]);
+    joint(&with(&["--model", "controller", "--told", "s1"])).refused(&["--told"]);
+}
+
+#[test]
 fn chip_name_is_not_a_board() {
     joint(&["flash", "q1"]).refused(&["no board is named", "--board", "odrive-3.6"]);
     let chip = ["is a chip, not a board", "olimex-h405, odrive-3.6, feather-f405"];

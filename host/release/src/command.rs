@@ -21,6 +21,7 @@ use crate::contents::{self, DIGESTS, File, LeftOut};
 use crate::parts::{self, Builds};
 use crate::sbom::Materials;
 use crate::source::Source;
+use crate::tools;
 
 /// Purpose of the command.
 pub const ABOUT: &str =
@@ -151,7 +152,7 @@ fn build(arguments: &Arguments, source: &Source, progress: &Progress) -> Outcome
     Ok((files, left_out))
 }
 
-/// Versions of the compilers that have built something.
+/// Versions of compilers and linker that have built something.
 fn compilers(arguments: &Arguments, builds: &Builds<'_>) -> Outcome<Vec<String>> {
     let mut found = Vec::new();
     if [Part::Wheel, Part::Command, Part::Libraries].into_iter().any(|part| arguments.builds(part)) {
@@ -161,6 +162,9 @@ fn compilers(arguments: &Arguments, builds: &Builds<'_>) -> Outcome<Vec<String>>
     if [Part::Images, Part::Libraries].into_iter().any(|part| arguments.builds(part)) {
         let board = Toolchain::prepare(builds.say)?.compiler().to_owned();
         found.extend((!found.contains(&board)).then_some(board));
+    }
+    if [Part::Wheel, Part::Command].into_iter().any(|part| arguments.builds(part)) {
+        found.extend(tools::PACKAGES.map(|package| package.replace("==", " ")));
     }
     Ok(found)
 }

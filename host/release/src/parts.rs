@@ -21,10 +21,12 @@ use crate::contents::{File, LeftOut};
 use crate::paths::reproducible;
 use crate::sbom::NOTICES;
 use crate::source::Source;
-use crate::tools;
+use crate::tools::{self, Python};
 
 /// Version of a release, equal to the workspace's.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Oldest C library that wheel and command run on: the oldest one that Rust's standard library supports.
+const OLDEST_GLIBC: &str = "2.17";
 /// Role of the images: the joint itself, which needs no parameters of a user's own joint.
 const ROLE: Role = Role::Plant;
 
@@ -43,14 +45,19 @@ pub fn build_folder() -> PathBuf {
     target_directory().join("for-release")
 }
 
+/// Tag of a wheel for the oldest C library.
+fn oldest_tag() -> String {
+    format!("manylinux_{}", OLDEST_GLIBC.replace('.', "_"))
+}
+
 /// Python wheel, by maturin.
 pub fn wheel(builds: &Builds<'_>) -> Outcome<File> {
-    let python = tools::python_with_maturin(&builds.folder.join("tools"), builds.say)?;
+    let python = Python::prepare(&builds.folder.join("tools"), builds.say)?;
     let out = new_folder(&builds.folder.join("wheel"))?;
-    let mut command = Command::new(python);
+    let mut command = python.command("maturin");
     reproducible(&mut command, builds.source, builds.folder)
         .current_dir(workspace().join("bindings/python"))
-        .args(["-m", "maturin", "build", "--release", "--locked", "--out"])
+        .args(["build", "--release", "--locked", "--zig", "--compatibility", &oldest_tag(), "--out"])
         .arg(&out)
         .arg("--target-dir")
         .arg(builds.folder);
@@ -67,17 +74,24 @@ pub fn wheel(builds: &Builds<'_>) -> Outcome<File> {
 
 /// The command `joint` with its test files, as an archive for this kind of machine.
 pub fn program(builds: &Builds<'_>, notices: &[u8]) -> Outcome<File> {
-    let mut command = tool::cargo();
+    let python = Python::prepare(&builds.folder.join("tools"), builds.say)?;
+    let triple = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
+    let mut command = python.command("cargo-zigbuild");
     reproducible(&mut command, builds.source, builds.folder)
-        .args(["build", "--release", "--locked", "--package", "joint", "--bin", "joint", "--target-dir"])
+        .args(["zigbuild", "--release", "--locked", "--package", "joint", "--bin", "joint"])
+        .args(["--target", &format!("{triple}.{OLDEST_GLIBC}"), "--target-dir"])
         .arg(builds.folder);
     tool::run_with_progress(&mut command, "building the command", builds.say)?;
     let target = format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS);
     let prefix = format!("lostmotion-{VERSION}-{target}");
+    let program = read(&builds.folder.join(triple).join("release/joint"))?;
+    if let Some(found) = newest_glibc(&program).filter(|found| !is_within(found, OLDEST_GLIBC)) {
+        return Err(Failure::new(format!("bin/joint needs glibc {found}, newer than {OLDEST_GLIBC}")));
+    }
     let mut entries = vec![
         ("LICENSE".to_owned(), Entry::File(read(&workspace().join("LICENSE"))?)),
         (NOTICES.to_owned(), Entry::File(notices.to_vec())),
-        ("bin/joint".to_owned(), Entry::Program(read(&builds.folder.join("release/joint"))?)),
+        ("bin/joint".to_owned(), Entry::Program(program)),
     ];
     let tests = files(&workspace().join("hil"))?;
     let named = |(name, bytes)| (format!("share/lostmotion/hil/{name}"), Entry::File(bytes));
@@ -88,6 +102,24 @@ pub fn program(builds: &Builds<'_>, notices: &[u8]) -> Outcome<File> {
         target,
         bytes: tarball::pack(&prefix, entries)?,
     })
+}
+
+/// Newest version of glibc whose symbols a program needs: the versions stand in it as `GLIBC_2.17`.
+fn newest_glibc(program: &[u8]) -> Option<String> {
+    const MARK: &[u8] = b"GLIBC_";
+    let versions = program.windows(MARK.len()).enumerate().filter(|(_, window)| *window == MARK).map(|(at, _)| {
+        let digits = program[at + MARK.len()..].iter().take_while(|byte| byte.is_ascii_digit() || **byte == b'.');
+        digits.map(|byte| char::from(*byte)).collect::<String>()
+    });
+    versions.max_by_key(|version| numbers(version))
+}
+
+fn is_within(version: &str, oldest: &str) -> bool {
+    numbers(version) <= numbers(oldest)
+}
+
+fn numbers(version: &str) -> Vec<u32> {
+    version.split('.').map(|number| number.parse().unwrap_or(0)).collect()
 }
 
 /// Library for C and C++ for each target, by `joint library`.
@@ -223,6 +255,16 @@ fn files(folder: &Path) -> Outcome<Vec<(String, Vec<u8>)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Versions are compared by their numbers, and private ones are none.
+    #[test]
+    fn newest_glibc_is_found() {
+        let program = b"\0GLIBC_2.9\0GLIBC_PRIVATE\0GLIBC_2.17\0GLIBC_2.2.5\0";
+        let found = newest_glibc(program).expect("a version");
+        assert_eq!(found, "2.17");
+        assert!(is_within(&found, OLDEST_GLIBC) && !is_within("2.18", OLDEST_GLIBC) && !is_within("3.0", OLDEST_GLIBC));
+        assert_eq!(newest_glibc(b"static"), None);
+    }
 
     /// The order of an archive does not depend on that of the folder.
     #[test]

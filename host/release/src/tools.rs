@@ -1,4 +1,5 @@
-//! maturin and mdbook in fixed versions, installed by pip and cargo below the build directory if they are missing there.
+//! Tools in fixed versions, installed by pip and cargo below the build directory if they are missing there: maturin, which
+//! builds wheels; zig as linker, which knows old versions of the C library; mdbook.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,31 +8,58 @@ use std::process::Command;
 use board::device::{Say, tool};
 use report::failure::{Failure, Outcome};
 
-/// Version of maturin that wheels are built with, as the wheel's test does.
-const MATURIN: &str = "maturin==1.16.0";
+/// Builder of wheels, linker, and cargo's command for that linker.
+pub const PACKAGES: [&str; 3] = ["maturin==1.16.0", "ziglang==0.15.1", "cargo-zigbuild==0.24.1"];
 /// Version of mdbook that the pages are written for.
 const MDBOOK: &str = "0.4.52";
 
-/// Interpreter with maturin.
-pub fn python_with_maturin(folder: &Path, say: Say<'_>) -> Outcome<PathBuf> {
-    let place = folder.join(MATURIN.replace("==", "-"));
-    let python = place.join("bin/python");
-    let has_maturin = || tool::capture_output(Command::new(&python).args(["-m", "maturin", "--version"])).is_ok();
-    if has_maturin() {
-        return Ok(python);
+/// Environment of Python with `PACKAGES`.
+pub struct Python {
+    programs: PathBuf,
+}
+
+impl Python {
+    /// Installs the packages in `folder`, once.
+    pub fn prepare(folder: &Path, say: Say<'_>) -> Outcome<Self> {
+        let place = folder.join(PACKAGES.join("-").replace("==", "-"));
+        let found = Self { programs: place.join("bin") };
+        if found.has_packages() {
+            return Ok(found);
+        }
+        say(&format!("installing {} below the build directory, once", PACKAGES.join(", ")));
+        let help = "install python3 with venv (package python3-venv), and let pip reach its index; or leave wheel and \
+                    command out: --only";
+        let mut create = Command::new("python3");
+        create.args(["-m", "venv", "--clear"]).arg(&place);
+        let mut install = Command::new(found.program("python"));
+        install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(PACKAGES);
+        for command in [&mut create, &mut install] {
+            tool::run_with_progress(command, "installing the builder of wheels and the linker", say)
+                .map_err(|failure| failure.with_help(help))?;
+        }
+        Ok(found)
     }
-    say(&format!("installing {MATURIN} below the build directory, once"));
-    let help =
-        "install python3 with venv (package python3-venv), and let pip reach its index; or leave the wheel out: --only";
-    let mut create = Command::new("python3");
-    create.args(["-m", "venv", "--clear"]).arg(&place);
-    let mut install = Command::new(&python);
-    install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", MATURIN]);
-    for command in [&mut create, &mut install] {
-        tool::run_with_progress(command, &format!("installing {MATURIN}"), say)
-            .map_err(|failure| failure.with_help(help))?;
+
+    /// A program of the environment; the programs that it starts by name are the environment's, too.
+    pub fn command(&self, name: &str) -> Command {
+        let mut command = Command::new(self.program(name));
+        let users = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::iter::once(self.programs.clone()).chain(std::env::split_paths(&users));
+        if let Ok(path) = std::env::join_paths(folders) {
+            command.env("PATH", path);
+        }
+        command
     }
-    Ok(python)
+
+    fn program(&self, name: &str) -> PathBuf {
+        self.programs.join(name)
+    }
+
+    fn has_packages(&self) -> bool {
+        let answers =
+            |program: &str, arguments: &[&str]| tool::capture_output(self.command(program).args(arguments)).is_ok();
+        answers("maturin", &["--version"]) && answers("python", &["-m", "ziglang", "version"])
+    }
 }
 
 /// Program mdbook.

@@ -164,7 +164,7 @@ fn wheel_passes_its_tests_without_rust() {
 
     let folder = tempfile::tempdir().expect("a folder");
     let tests = folder.path().join("tests");
-    for kind in ["tests", "notebooks"] {
+    for kind in ["tests", "notebooks", "examples"] {
         let copy = folder.path().join(kind);
         succeeded(Command::new("cp").arg("-r").arg(bindings().join(kind)).arg(copy));
     }

@@ -123,6 +123,18 @@ mod tests {
     }
 
     #[test]
+    fn reset_forgets_the_set_points() {
+        let point = |torque: f64| ImpedancePoint { torque, stiffness: 100.0, speed: 2.0, ..Default::default() };
+        let demand = |law: &mut ImpedanceLaw<f64>, torque: f64| {
+            law.demand(&tables(), &LoadModel::of_known(0.0, 0.0), &state(), &point(torque)).now
+        };
+        let (mut used, mut new) = (ImpedanceLaw::new(), ImpedanceLaw::new());
+        [0.0, 0.0, 4.0].map(|torque| demand(&mut used, torque));
+        used.reset();
+        assert_eq!([1.0, 1.0].map(|torque| demand(&mut used, torque)), [1.0, 1.0].map(|torque| demand(&mut new, torque)));
+    }
+
+    #[test]
     fn error_that_is_no_number_is_not_finite() {
         let point = ImpedancePoint { stiffness: 100.0, ..Default::default() };
         assert!(!demand(&point, &LoopState { error: f64::NAN, ..state() }).is_finite());

@@ -107,6 +107,33 @@ mod tests {
         assert!(demand.is_impedance && demand.now == 3.0);
     }
 
+    /// Set-points held for three periods of 1 ms: from one period to the next the demand grows as the spring follows the
+    /// moving point, and by the torque's own rate.
+    #[test]
+    fn moving_point_is_extrapolated_between_set_points() {
+        let mut law = ImpedanceLaw::new();
+        let mut demand = |torque: f64| {
+            let point = ImpedancePoint { torque, stiffness: 100.0, speed: 2.0, ..Default::default() };
+            law.demand(&tables(), &LoadModel::of_known(0.0, 0.0), &state(), &point).now
+        };
+        let found = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(&mut demand);
+        // The link's share of the torque is 0.75; half of the change of 1 N m in three periods counts as its rate.
+        let rate = (found[4] - found[3]) / 0.75e-3;
+        assert!((rate - (100.0 * 2.0 + 0.5 / 3e-3)).abs() < 1e-6, "{found:?}");
+    }
+
+    #[test]
+    fn reset_forgets_the_set_points() {
+        let point = |torque: f64| ImpedancePoint { torque, stiffness: 100.0, speed: 2.0, ..Default::default() };
+        let demand = |law: &mut ImpedanceLaw<f64>, torque: f64| {
+            law.demand(&tables(), &LoadModel::of_known(0.0, 0.0), &state(), &point(torque)).now
+        };
+        let (mut used, mut new) = (ImpedanceLaw::new(), ImpedanceLaw::new());
+        [0.0, 0.0, 4.0].map(|torque| demand(&mut used, torque));
+        used.reset();
+        assert_eq!([1.0, 1.0].map(|torque| demand(&mut used, torque)), [1.0, 1.0].map(|torque| demand(&mut new, torque)));
+    }
+
     #[test]
     fn error_that_is_no_number_is_not_finite() {
         let point = ImpedancePoint { stiffness: 100.0, ..Default::default() };

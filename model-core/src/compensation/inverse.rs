@@ -309,6 +309,28 @@ mod tests {
     }
 
     #[test]
+    fn link_leaves_its_flank_by_lead_and_error_together() {
+        let left = |lead: f64, error: f64| {
+            let edges = [None, Some(-HALF_GAP)];
+            let inverse = BacklashInverse { share: -1.0, edges, has_settled: true, ..BacklashInverse::new(&tables()) };
+            inverse.left_towards(&LoopState { motor_lead: lead * HALF_GAP, error: error * HALF_GAP, ..state() })
+        };
+        let found =
+            [(-0.4, 0.6), (-0.4, 0.4), (-0.6, 0.6), (-1.6, 0.6), (-0.4, -0.6)].map(|(lead, error)| left(lead, error));
+        assert_eq!(found, [Some(1.0), None, None, None, None]);
+    }
+
+    #[test]
+    fn flank_shift_is_no_opening() {
+        let edges = [Some(HALF_GAP), None];
+        let inverse = BacklashInverse { share: 1.0, edges, has_settled: true, ..BacklashInverse::new(&tables()) };
+        let shifted =
+            LoopState { motor_lead: 0.4 * HALF_GAP, flank_shift: -0.2 * HALF_GAP, error: -HALF_GAP, ..state() };
+        assert_eq!(inverse.left_towards(&shifted), None);
+        assert_eq!(inverse.left_towards(&LoopState { flank_shift: 0.2 * HALF_GAP, ..shifted }), Some(-1.0));
+    }
+
+    #[test]
     fn idle_inverse_follows_the_motor() {
         let mut inverse = BacklashInverse::new(&tables());
         inverse.update_integral(&tables(), &state(), None);

@@ -327,6 +327,29 @@ mod tests {
     }
 
     #[test]
+    fn load_beyond_the_negative_limit_counts_as_it() {
+        let mut load = LoadModel::new();
+        (0..2000).for_each(|_| load.update(&tables(), &measured(-50.0), &state(), true));
+        assert!((load.gravity_torque() + 10.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn saturated_motor_teaches_no_friction() {
+        let mut load = LoadModel::of_known(2.0, 1.0);
+        for period in 0..4000 {
+            let direction = if (period / 500) % 2 == 0 { 1.0 } else { -1.0 };
+            load.record_saturation(&tables(), true);
+            load.update(&tables(), &measured(2.0 + 3.0 * direction), &moving(direction), true);
+            assert_eq!(load.friction(), 1.0);
+        }
+        let before = load.gravity_torque();
+        load.record_saturation(&tables(), true);
+        load.update(&tables(), &measured(before + 1.0 + 0.5), &moving(1.0), true);
+        let share = (load.gravity_torque() - before) / 0.5;
+        assert!(share > 0.0 && share < 1.0, "a part of the difference to gravity torque and friction: {share}");
+    }
+
+    #[test]
     fn push_beyond_the_teeth_is_an_impact_for_a_transient() {
         let impact = |torque: f64, after: u32| {
             let mut load = LoadModel::new();

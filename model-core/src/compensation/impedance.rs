@@ -131,7 +131,10 @@ mod tests {
         let (mut used, mut new) = (ImpedanceLaw::new(), ImpedanceLaw::new());
         [0.0, 0.0, 4.0].map(|torque| demand(&mut used, torque));
         used.reset();
-        assert_eq!([1.0, 1.0].map(|torque| demand(&mut used, torque)), [1.0, 1.0].map(|torque| demand(&mut new, torque)));
+        assert_eq!(
+            [1.0, 1.0].map(|torque| demand(&mut used, torque)),
+            [1.0, 1.0].map(|torque| demand(&mut new, torque))
+        );
     }
 
     #[test]

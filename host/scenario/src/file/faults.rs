@@ -171,3 +171,34 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
     }
     Some(Fault { start, end, seed: (), kind })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{keys, read};
+    use super::*;
+
+    /// Every word with the keys that it needs.
+    const WORDS: [(&str, &str); 11] = [
+        ("encoder_frozen", ""),
+        ("encoder_offset", "counts = 5"),
+        ("encoder_noise", "noise_counts = 4"),
+        ("encoder_missing_counts", "share = 0.1"),
+        ("encoder_eccentric", "error_deg = 0.1"),
+        ("torque_bias", "torque_N_m = 0.1"),
+        ("torque_saturation", "torque_N_m = 1"),
+        ("lost_frames", "share = 0.1"),
+        ("late_frames", "delay_ms = 1"),
+        ("grown_backlash", "half_backlash_um = 60"),
+        ("broken_tooth", "stiffness_ratio = 0.5"),
+    ];
+
+    #[test]
+    fn every_word_is_read_as_its_own_fault() {
+        for word in keys::FAULTS {
+            let (_, needed) =
+                WORDS.iter().find(|(known, _)| known == word).unwrap_or_else(|| panic!("no keys of {word}"));
+            let file = read(&format!("profile = \"T2\"\n[[fault]]\nkind = \"{word}\"\n{needed}")).expect("a good file");
+            assert_eq!(file.faults.iter().map(fault_word).collect::<Vec<_>>(), [*word]);
+        }
+    }
+}

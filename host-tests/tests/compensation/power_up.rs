@@ -108,7 +108,7 @@ fn turning(test: &Test, seed: u64, controller: ControllerName) -> Figures {
     let mut loop_controller = match controller {
         NoPreview => ActiveController::Compensation(
             Box::new(HostPort::new(&designed)),
-            Translator::new(designed.ticks, turns, &case.zeros),
+            Translator::new(designed.ticks, turns, &case.zeros, true),
         ),
         rival => ActiveController::rival(rival, case.knowledge(), case.bandwidth(&test.file).expect("a bandwidth")),
     };

@@ -101,7 +101,6 @@ fn turning(test: &Test, seed: u64, controller: ControllerName) -> Figures {
     let mut setup = setup(&test.file, &case, seed, on_reference(controller));
     let planets = setup.joint.geometry.planets;
     setup.start = Start::Relative(RelativeState { rigid_speed: 1.0, ..RelativeState::centred(planets) });
-    setup.mounting = setup.start.clone();
     let rig = Rig::new(&setup).expect("a rig");
     let designed = case.design(&test.file).expect("tables");
     let around = &case.nominal_surroundings;

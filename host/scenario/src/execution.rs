@@ -103,10 +103,10 @@ fn run(
         }
         (None, None) => ActiveController::rival(spec.controller, case.knowledge(), case.bandwidth(file)?),
     };
-    let run = RunContext { file, case, spec, designed, watch, mounting_seed: seed };
+    let run = RunContext { file, case, spec, designed, watch, mounting_seed: None };
     if file.from_memory && spec.controller.is_compensation() {
         // The first run has other noise and another place in the gap, so that the memory holds the joint alone.
-        RunContext { watch: watch.named(None), ..run }.execute(&mut controller, !seed)?;
+        RunContext { watch: watch.named(None), mounting_seed: Some(seed), ..run }.execute(&mut controller, !seed)?;
         let memory_at_start = controller.restart_from_memory()?;
         return Ok(RunHistory { memory_at_start, ..run.execute(&mut controller, seed)? });
     }
@@ -116,11 +116,9 @@ fn run(
 /// Plant, motion and faults of a case.
 pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
     let joint = if spec.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
-    let start = Start::Relative(start_state(&joint, seed));
     Setup {
         plant: spec.plant,
-        start: start.clone(),
-        mounting: start,
+        start: Start::Relative(start_state(&joint, seed)),
         disturbances: case.disturbances.clone(),
         faults: if spec.without_gap { Vec::new() } else { file.faults.clone() },
         ..Setup::new(joint, case.train.clone(), case.motion.clone(), file.duration, seed)
@@ -145,15 +143,15 @@ struct RunContext<'r> {
     spec: RunSpec,
     designed: Option<&'r Designed>,
     watch: Watch<'r>,
-    /// Seed of the place in the gap at which the encoders were mounted.
-    mounting_seed: u64,
+    /// Seed of the place in the gap at which the encoders were mounted; `None` for that of the run.
+    mounting_seed: Option<u64>,
 }
 
 impl RunContext<'_> {
     fn execute(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
         let Self { file, case, spec, designed, watch, mounting_seed } = *self;
         let mut setup = setup(file, case, seed, spec);
-        setup.mounting = Start::Relative(start_state(&setup.joint, mounting_seed));
+        setup.mounting = mounting_seed.map(|seed| Start::Relative(start_state(&setup.joint, seed)));
         let rig = Rig::new(&setup)?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
         let mut history = RunHistory::begin(rig.period(), rig.periods());

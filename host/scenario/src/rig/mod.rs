@@ -67,8 +67,9 @@ impl Rig {
         let plant_at = |state| plant_from(setup.plant, joint, state, train, setup.disturbances.clone(), setup.seed);
         let plant = plant_at(&setup.start)?;
         let faults = HostFaults::new(&setup.faults, setup.seed, joint, train);
-        let faults =
-            faults.starting_at(plant.joint(), plant_at(&setup.mounting)?.joint(), joint.geometry.ratio_by_teeth());
+        let mounted = setup.mounting.as_ref().map(plant_at).transpose()?;
+        let mounted = mounted.as_ref().unwrap_or(&plant).joint();
+        let faults = faults.starting_at(plant.joint(), mounted, joint.geometry.ratio_by_teeth());
         Ok(Self {
             plant: plant.stepped(setup.stepping),
             faults,

@@ -19,8 +19,8 @@ pub struct Setup {
     pub train: DriveTrainParameters,
     /// Initial state of the teeth.
     pub start: Start,
-    /// State of the teeth in which the encoders were mounted: motor encoder and output encoder then agree.
-    pub mounting: Start,
+    /// State of the teeth in which the encoders were mounted, so that both agree; `None` for the initial state.
+    pub mounting: Option<Start>,
     /// Stepping of the f64 reference.
     pub stepping: Stepping,
     /// Torques on the link.
@@ -44,11 +44,10 @@ impl Setup {
         duration: f64,
         seed: u64,
     ) -> Self {
-        let centred = Start::Relative(RelativeState::centred(joint.geometry.planets));
         Self {
             plant: PlantName::Reference,
-            start: centred.clone(),
-            mounting: centred,
+            start: Start::Relative(RelativeState::centred(joint.geometry.planets)),
+            mounting: None,
             joint,
             train,
             stepping: Stepping::Fixed,

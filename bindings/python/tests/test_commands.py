@@ -1,6 +1,7 @@
 """Identification, tests and logs as functions."""
 
 import _thread
+import signal
 import subprocess
 import sys
 import threading
@@ -109,6 +110,8 @@ def test_own_test_file_and_its_errors(tmp_path):
 
 
 def test_ctrl_c_ends_a_test_and_the_next_one_runs():
+    # A shell that starts this in the background has it ignore the signal.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     threading.Timer(0.5, _thread.interrupt_main).start()
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):

@@ -140,7 +140,7 @@ mod tests {
         }
         let possible = argument.get_possible_values();
         let accepted = |value: &str| {
-            let line = option.iter().cloned().map(|option| format!("{option}={value}"));
+            let line = option.iter().map(|option| format!("{option}={value}"));
             let line: Vec<String> = if option.is_some() { line.collect() } else { vec![value.to_owned()] };
             (!matches!(outcome(command, &line), Err(ErrorKind::InvalidValue | ErrorKind::ValueValidation)))
                 .then_some(line)

@@ -129,7 +129,9 @@ mod tests {
             law.demand(&tables(), &LoadModel::of_known(0.0, 0.0), &state(), &point(torque)).now
         };
         let (mut used, mut new) = (ImpedanceLaw::new(), ImpedanceLaw::new());
-        [0.0, 0.0, 4.0].map(|torque| demand(&mut used, torque));
+        for torque in [0.0, 0.0, 4.0] {
+            demand(&mut used, torque);
+        }
         used.reset();
         assert_eq!(
             [1.0, 1.0].map(|torque| demand(&mut used, torque)),
